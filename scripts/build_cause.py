@@ -1,6 +1,6 @@
-"""Finds in a build's output what went wrong first, in the build tools' own lines.
+"""Finds the first error in a build's output, in the build tools' own lines.
 
-    build_cause.py LOG        prints at most six lines; nothing where it finds none
+    build_cause.py LOG        prints at most six lines; nothing if it finds none
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def traceback_block(lines: list[str]) -> list[str]:
 
 
 def cause(text: str) -> list[str]:
-    """The lines that tell the first cause in a build's output; none if nothing looks like one."""
+    """The lines on the first error in a build's output; none if nothing looks like one."""
     lines = text.splitlines()
     for position, line in enumerate(lines):
         rest = lines[position:]
@@ -71,7 +71,7 @@ def cause(text: str) -> list[str]:
 
 
 def advice(lines: list[str]) -> str | None:
-    """What to type, where a package is what is missing."""
+    """What to type if a package is missing; else None."""
     found = NOT_FOUND.search(" ".join(line.strip() for line in lines))  # CMake wraps its lines
     if not found:
         return None
@@ -80,7 +80,7 @@ def advice(lines: list[str]) -> str | None:
 
 
 def main() -> int:
-    """Always 0: the build has failed already."""
+    """Always returns 0: the build has failed already."""
     lines = cause(Path(sys.argv[1]).read_text(errors="replace"))
     for line in lines:
         print(f"  {line}")

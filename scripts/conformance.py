@@ -1,6 +1,6 @@
-"""Which tests stand for which rows of the interface table, and how they came out.
+"""Which tests cover which rows of the interface table, and their results.
 
-A test says in a comment what it covers: `# conforms: ROW/TAG, ROW`. After a run of the tests
+A comment in a test names what it covers: `# conforms: ROW/TAG, ROW`. After a run of the tests
 `python3 scripts/conformance.py` prints the table with each row's tests and whether they passed.
 """
 
@@ -23,7 +23,7 @@ FAILED, NOT_RUN, PASSED = "FAILED", "not run", "ok"
 
 
 def covered() -> dict[str, set[str]]:
-    """Names of rows and tags, and the functions of tests that say they cover them."""
+    """Names of rows and tags, each with the test functions that cover it."""
     found: dict[str, set[str]] = defaultdict(set)
     for path in sorted(ROOT.glob("src/**/test/**/*.py")):
         function = ""
@@ -40,7 +40,7 @@ def outcomes(folder: Path = RESULTS) -> dict[str, str]:
     """Each test function of the last run: FAILED if any of its cases did, else ok."""
     found: dict[str, str] = {}
     for path in folder.rglob("*.xml"):
-        with contextlib.suppress(ET.ParseError):  # its run was ended while it was written
+        with contextlib.suppress(ET.ParseError):  # the run was ended while writing it
             for case in ET.parse(path).iter("testcase"):
                 function = (case.get("name") or "").split("[")[0]
                 bad = case.find("failure") is not None or case.find("error") is not None
@@ -65,14 +65,14 @@ def report(sections: list[Section], tests: dict[str, set[str]], results: dict[st
 
 
 def uncovered(sections: list[Section], tests: dict[str, set[str]]) -> list[str]:
-    """What is said to work, with no test that says so."""
+    """Rows and tags listed as working that no test covers."""
     return [name for section in sections for row in section.rows for name, entry in row.names()
             if entry.status in (WORKS, APPROXIMATED) and not tests.get(name)
             and not (entry is row and row.tags)]
 
 
 def unknown(sections: list[Section], tests: dict[str, set[str]]) -> list[str]:
-    """What tests say they cover, and no row has."""
+    """Names in tests' comments that no row has."""
     names = {name for section in sections for row in section.rows for name, _ in row.names()}
     return sorted(set(tests) - names)
 

@@ -1,12 +1,12 @@
-"""Takes support away, one tag at a time, and sees whether the tests that name it fail.
+"""Removes support for one tag at a time, and checks that the tests that name it fail.
 
     python3 scripts/conformance_audit.py [PART-OF-A-NAME]    every row and tag whose name has it
 
-A tag of a plugin is hidden from the plugin; an element of URDF or SDF is taken out of the texts
-before they are read, and so is a construct of xacro; a service or topic is not offered, or goes
-without a field; an argument of a launch file has no effect; a model, world or package is not found.
-A test that still passes proves nothing: it is listed, and the exit code is 1. Takes an hour; not
-part of `make test`. What cannot be hidden so was broken by hand.
+A plugin's tag is hidden from the plugin; an element of URDF or SDF is removed from the text before
+parsing, and so is a construct of xacro; a service or topic is not offered, or lacks a field; a
+launch file's argument has no effect; a model, world or package is not found. A test that still
+passes proves nothing: it is listed, and the exit code is 1. Takes an hour; not part of `make test`.
+What cannot be hidden like this was broken by hand.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from bullet_sim_ros.interface import APPROXIMATED, WORKS, read_interface
 
 ROOT = Path(__file__).resolve().parent.parent
 LIMIT = 120.0  # s, for the tests of one tag
-# what upstream always leaves as an empty message has it: hiding it changes nothing
+# fields that upstream always leaves at their default: hiding them changes nothing
 EMPTY = {"/gazebo/get_model_properties/canonical_body_name", "/gazebo/get_joint_properties/type",
          "/gazebo/get_joint_properties/damping"}
-# what can be taken away
+# what can be hidden
 AUDITED = re.compile(
     r"lib\S+\.so|/gazebo/\w+(/(?!light$)[\w.]+( \.\. \w+)?)?$|(sdf|urdf) [^(]+$|\w+\.launch/\w+$"
     r"|xacro (macro|property|include)($|/)|xacro (substitutions|expressions|tags)/"
@@ -35,7 +35,7 @@ AUDITED = re.compile(
 
 
 def files_of_functions() -> dict[str, set[str]]:
-    """Test files by the functions in them; rostest's scripts are left to themselves."""
+    """Test files by the functions in them; without rostest's scripts."""
     found: dict[str, set[str]] = defaultdict(set)
     for path in ROOT.glob("src/**/test/**/test_*.py"):
         for line in path.read_text(encoding="utf-8").splitlines():
@@ -45,7 +45,7 @@ def files_of_functions() -> dict[str, set[str]]:
 
 
 def survives(name: str, functions: set[str], files: dict[str, set[str]]) -> str | None:
-    """A line if the tests pass although the thing is hidden; None if one fails, as it should."""
+    """A line if the tests pass although `name` is hidden; None if one fails, as it should."""
     nodes = sorted({path for function in functions for path in files.get(function, ())})
     if not nodes:
         return None  # rostest's
@@ -66,7 +66,7 @@ def survives(name: str, functions: set[str], files: dict[str, set[str]]) -> str 
 
 
 def main() -> int:
-    """Go through the table."""
+    """Audit the table; returns the exit code."""
     wanted = sys.argv[1] if len(sys.argv) > 1 else ""
     tests, files = conformance.covered(), files_of_functions()
     bad = tried = 0

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 from conformance_hide_files import hide, put_in_place_of
 from gazebo_msgs.msg import LinkStates, ModelStates, PerformanceMetrics
 
-import bullet_sim.formats  # its modules have to be there to be changed
+import bullet_sim.formats  # its modules must be loaded to be changed
 from bullet_sim.errors import SimulationError
 from bullet_sim_ros import names
 from bullet_sim_ros.plugin_host import registry
@@ -22,7 +22,7 @@ TOPICS = {"model_states": ModelStates, "link_states": LinkStates,
 
 
 def pytest_configure() -> None:
-    """Before any test is read."""
+    """Runs before any test is collected."""
     name = os.environ["CONFORMANCE_HIDE"]
     row, _, tag = name.rpartition("/")
     if hide(name):
@@ -55,7 +55,7 @@ def _hide_plugin(library: str, tag: str) -> None:
 
 
 def _hide_topic(name: str) -> None:
-    """It goes by another name."""
+    """Rename the topic."""
     private = "~" + name.removeprefix("/gazebo/")
     for constant, value in list(vars(names).items()):
         if value in (private, name):
@@ -63,7 +63,7 @@ def _hide_topic(name: str) -> None:
 
 
 def _hide_field(name: str, field: str) -> None:
-    """Messages go, requests come without `a`, `a.b` or all from `a .. c`."""
+    """Remove `a`, `a.b` or all of `a .. c` from messages sent and requests received."""
     if name in TOPICS:
         kind = TOPICS[name]
         send = kind.serialize
@@ -86,7 +86,7 @@ def _hide_field(name: str, field: str) -> None:
 
 
 def _reset(message, field: str) -> None:
-    """What the field says becomes what an empty message says, however deep in it the field is."""
+    """Reset the field, at any depth, to its default value."""
     *path, last = field.split(".") if ".." not in field else [field]
     for part in path:
         message = getattr(message, part, None)
@@ -101,9 +101,9 @@ def _reset(message, field: str) -> None:
 
 
 def _hide_element(name: str) -> None:
-    """Elements at the end of such a path are taken out: `sdf a/b/c`, `urdf gazebo@link/mu1`.
+    """Remove the elements at a path: `sdf a/b/c`, `urdf gazebo@link/mu1`.
 
-    Of `sdf a/b@c` only the attribute c goes, of `sdf a/b@c/d` those b whose c is d.
+    `sdf a/b@c` removes only the attribute c, `sdf a/b@c/d` those b whose c is d.
     """
     language, _, written = name.partition(" ")
     above, _, attribute = written.partition("@") if language == "sdf" else (written, "", "")

@@ -1,4 +1,4 @@
-"""Hides what files hold or are: constructs of xacro, arguments of launch files, models, worlds."""
+"""Hides constructs of xacro, arguments of launch files, models and worlds."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from bullet_sim.errors import ResourceNotFound
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.xacro import files, opening  # noqa: F401  (the former's are changed)
 
-# What is taken out of a xacro file, as minidom writes it, and what stands there instead. Without a
-# line here `a` of "xacro tags" is an element, of other rows an attribute, and `$(a)` is itself.
+# Text to remove from a xacro file, as minidom writes it, and its replacement. Without an entry
+# here, `a` of "xacro tags" is an element, of other rows an attribute, and `$(a)` is itself.
 XACRO = {
     "xacro substitutions/$$": (r"\$\$", "$"),
     "xacro expressions/arithmetic": (r"(\$\{[\w ]+)[-+*/][^}]*", r"\1"),
@@ -47,14 +47,14 @@ XACRO = {
 
 
 def put_in_place_of(original: Callable, other: Callable) -> None:
-    """In every module that has it by this name."""
+    """Replace a function in every module that has it by this name."""
     for module in list(sys.modules.values()):
         if getattr(module, original.__name__, None) is original:
             setattr(module, original.__name__, other)
 
 
 def hide(name: str) -> bool:
-    """Takes it away; False if this file does not know how to."""
+    """Hide it; False if this module cannot."""
     row, _, tag = name.rpartition("/")
     if name.startswith("xacro "):
         _hide_in_xacro(name, row, tag)
@@ -89,7 +89,7 @@ def _hide_in_xacro(name: str, row: str, tag: str) -> None:
 
 
 def _hide_argument(file: str, argument: str) -> None:
-    """What is given for it on the command line has no effect."""
+    """Ignore the argument's value on the command line."""
     load = XmlLoader.load
 
     def without(self, filename, config, core=False, argv=None, verbose=True):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes what dpkg wants to know of the package into STAGE/DEBIAN, and prints the package's name.
+"""Writes the package's control files into STAGE/DEBIAN, and prints the package's name.
 
     deb_control.py STAGE PREFIX
 """
@@ -21,12 +21,12 @@ from package_lists import these_lists
 
 NAME = "ros-courses"
 MAINTAINER = "ros1-driving-courses <courses@example.org>"
-# Sections of debian.txt: what only a learner's own workspace needs, what only tests need.
+# Sections of debian.txt: needed only by a learner's own workspace; needed only by tests.
 RECOMMENDED, OMITTED = ("building",), ("testing",)
 ABOUT = """ROS 1 driving courses with a simulator behind Gazebo's interface
  The courses' robots, worlds, lessons, navigation and simulator, below {prefix}.
  To use them: source {prefix}/setup.bash"""
-# What root's Python may have added to the folder; dpkg knows of no file that it did not bring.
+# Removes files that root's Python added to the folder, which dpkg does not know.
 PRERM = """#!/bin/sh
 set -e
 case "$1" in remove|deconfigure)
@@ -41,7 +41,7 @@ mkdir -p /opt
 
 
 def sections(text: str) -> dict[str, list[str]]:
-    """Packages of debian.txt by section: a comment after an empty line begins one."""
+    """Packages of debian.txt by section; a comment after an empty line begins a section."""
     found: dict[str, list[str]] = {}
     before, current = "", ""
     for line in text.splitlines():
@@ -65,13 +65,13 @@ def dependencies(text: str) -> tuple[list[str], list[str]]:
 
 
 def python_range(version: tuple[int, int] = sys.version_info[:2]) -> list[str]:
-    """PyPI's packages are built for one version of Python alone."""
+    """Dependencies on one Python version, for which PyPI's packages are built."""
     major, minor = version
     return [f"python3 (>= {major}.{minor})", f"python3 (<< {major}.{minor + 1})"]
 
 
 def version(when: int) -> str:
-    """The lesson package's version, the commit's time and name: a later one counts as newer."""
+    """The lesson package's version, the commit's time and name: later ones count as newer."""
     manifest = ET.parse(ROOT / "src/learning_topic/package.xml")
     told = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty=.changed",
                            "--exclude=*"], capture_output=True, text=True, check=False)
@@ -92,7 +92,7 @@ def control(prefix: str, version: str, architecture: str, size_kib: int, package
 
 
 def copyright_text(prefix: str, packages: list[Distribution]) -> str:
-    """Our licence, and where those of PyPI's packages are."""
+    """Our licence, and the places of the PyPI packages' licences."""
     ours = (ROOT / "LICENSE").read_text(encoding="utf-8")
     lines = [f"{NAME}, below {prefix}, with these exceptions:", ""]
     for package in packages:
@@ -112,7 +112,7 @@ def checksums(stage: Path) -> str:
 
 
 def main() -> int:
-    """The exit code."""
+    """Returns the exit code."""
     stage, prefix, when = Path(sys.argv[1]), sys.argv[2], epoch()
     number, docs = version(when), stage / "usr/share/doc" / NAME
     docs.mkdir(parents=True, exist_ok=True)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Completes the tree that `make deb` packs: Python's packages, an interpreter, compiled modules.
+"""Completes the tree that `make deb` packs: Python packages, an interpreter, compiled modules.
 
     deb_stage.py STAGE PREFIX     STAGE/PREFIX holds what `cmake --install` put there
 """
@@ -20,14 +20,14 @@ from package_lists import SOURCE, read_pins, these_lists
 ROOT = Path(__file__).resolve().parent.parent
 VERSION = f"{sys.version_info.major}.{sys.version_info.minor}"
 MODULES = Path(f"lib/python{VERSION}/site-packages")  # of PyPI's packages, below the prefix
-# Parts of PyPI's packages that nothing here imports; together 180 MB.
+# Parts of PyPI's packages that nothing here imports; 180 MB in total.
 LEFT_OUT = ("pybullet_data", "pybullet_envs", "pybullet_examples", "pybullet_robots", "tests",
             "__pycache__")
-STRIPPED = ("pybullet.",)  # begin of files' names: 130 of its 140 MB are for a debugger
+STRIPPED = ("pybullet.",)  # prefix of files' names: 130 of its 140 MB are debug symbols
 
 
 def required() -> list[Distribution]:
-    """What running needs of PyPI's packages, as it is installed for this interpreter."""
+    """PyPI packages needed at run time, as installed for this interpreter."""
     lists = (these_lists() / f"{name}.txt" for name in ("requirements", SOURCE))
     return [distribution(name) for path in lists if path.exists()
             for name in read_pins(path.read_text(encoding="utf-8"))]
@@ -65,7 +65,7 @@ def add_interpreter(folder: Path) -> None:
 
 
 def settle_interpreter(folder: Path, prefix: str) -> None:
-    """What the build's interpreter is named in runs by the installed one."""
+    """Replace the build's interpreter by the installed one in all files that name it."""
     built_with = f"{ROOT}/.venv/bin/python3".encode()
     for path in _files(folder):
         data = path.read_bytes()
@@ -74,7 +74,7 @@ def settle_interpreter(folder: Path, prefix: str) -> None:
 
 
 def compile_modules(stage: Path, folder: Path, epoch: int) -> None:
-    """Compile all modules here, so that nobody who runs them has to write beside them."""
+    """Compile all modules, so that users need no write access to run them."""
     for cached in list(folder.rglob("__pycache__")):
         shutil.rmtree(cached)
     settle_times(stage, epoch)  # a compiled module remembers its source's
@@ -85,7 +85,7 @@ def compile_modules(stage: Path, folder: Path, epoch: int) -> None:
 
 
 def settle_times(stage: Path, epoch: int) -> None:
-    """The same time (s since 1970) for all files and folders, and nobody but the owner writes."""
+    """Set one time (s since 1970) for all files and folders; only the owner may write."""
     for folder, folders, files in os.walk(stage):
         for path in (Path(folder), *(Path(folder) / name for name in (*folders, *files))):
             if not path.is_symlink():
@@ -94,7 +94,7 @@ def settle_times(stage: Path, epoch: int) -> None:
 
 
 def places_of_build(folder: Path) -> list[Path]:
-    """Files that name this checkout's folder; none may."""
+    """Files that contain this checkout's path; there may be none."""
     return [path for path in _files(folder) if bytes(ROOT) in path.read_bytes()]
 
 
@@ -112,7 +112,7 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def main() -> int:
-    """The exit code."""
+    """Returns the exit code."""
     stage, prefix = Path(sys.argv[1]), sys.argv[2]
     folder = stage / prefix.lstrip("/")
     add_packages(folder / MODULES)

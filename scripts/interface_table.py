@@ -40,7 +40,7 @@ WORDS = {
 
 
 def document(sections: list[Section], language: str) -> str:
-    """The summary, then the whole table, a chapter for each section."""
+    """The summary, then the complete table, with a chapter for each section."""
     words = WORDS[language]
     lines = [f"# {words['title']}", "", words["other"], "", words["note"], "",
              *summary(sections, language), ""]
@@ -54,7 +54,7 @@ def document(sections: list[Section], language: str) -> str:
 
 
 def summary(sections: list[Section], language: str) -> list[str]:
-    """One line a section: how many rows work, which are only approximated or not there."""
+    """One line per section: how many rows work, and which are approximated or missing."""
     words = WORDS[language]
     lines = [f"| {words['part']} | {words[WORKS]} | {words[APPROXIMATED]} | {words[ABSENT]} |",
              "|---|---|---|---|"]
@@ -79,7 +79,7 @@ def _how(entry: Entry, language: str) -> str:
 
 
 def _tags(tags, language: str) -> str:
-    """Tags by status; what is not simply there comes with its reason."""
+    """Tags by status; those that do not simply work come with a reason."""
     words, parts = WORDS[language], []
     working = [f"`{tag.name}`" for tag in tags if tag.status == WORKS]
     if working:

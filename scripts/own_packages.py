@@ -1,9 +1,9 @@
-"""Lets a learner's package in src/ take the place of ours with the same name.
+"""Lets a learner's package in src/ replace ours of the same name.
 
-catkin refuses two packages of one name, and rospack takes the first that it meets. So our package's
-folder gets a CATKIN_IGNORE, which catkin, rospack and rospkg all heed, for as long as a package of
-that name lies in src/ outside our own folders. Run before each build; prints a line where
-something is left out or back, and ends with 1 where two of the learner's packages share a name.
+catkin refuses two packages of one name, and rospack takes the first that it finds. So our package's
+folder gets a CATKIN_IGNORE, which catkin, rospack and rospkg all respect, for as long as a package
+of that name is in src/ outside our own folders. Run before each build; prints a line if a package
+of ours is left out or restored, and ends with 1 if two of the learner's packages share a name.
 
     own_packages.py SRC
 """
@@ -24,12 +24,12 @@ MARK = "made by the build: a package of this name elsewhere in src/ is built ins
 
 
 def is_ours(path: str) -> bool:
-    """Whether a path below src/ lies in one of our folders."""
+    """Whether a path below src/ is in one of our folders."""
     return Path(path).parts[0] in OUR_FOLDERS if path != "." else False
 
 
 def marked(src: Path) -> set[str]:
-    """Our packages, by their paths below src/, that a build before this one left out."""
+    """Our packages, by their paths below src/, that an earlier build left out."""
     found = set()
     for folder in OUR_FOLDERS:
         for marker in (src / folder).rglob(MARKER):
@@ -39,7 +39,7 @@ def marked(src: Path) -> set[str]:
 
 
 def names_of(src: Path, paths: list[str]) -> dict[str, list[str]]:
-    """Paths by package name; what has no readable package.xml is catkin's to complain about."""
+    """Paths by package name; an unreadable package.xml is left for catkin to report."""
     found: dict[str, list[str]] = {}
     for path in sorted(paths):
         try:
@@ -51,7 +51,7 @@ def names_of(src: Path, paths: list[str]) -> dict[str, list[str]]:
 
 
 def arrange(src: Path) -> tuple[list[str], list[str]]:
-    """Writes and removes markers; what to tell, and what is wrong."""
+    """Writes and removes markers; returns lines to print, and errors."""
     before = marked(src)
     paths = [*find_package_paths(str(src)), *before]
     theirs = names_of(src, [path for path in paths if not is_ours(path)])

@@ -1,4 +1,4 @@
-"""The table dependencies/packages.yaml, and the lists that are written from it.
+"""The table dependencies/packages.yaml, and the lists that are generated from it.
 
 A platform is a release and an architecture of Debian: bookworm-amd64. Its folder below
 dependencies/ has apt's lists (debian.txt, debian-test.txt) and pip's requirement files, which
@@ -18,7 +18,7 @@ import yaml
 FOLDER = Path(__file__).resolve().parent.parent / "dependencies"
 MADE = "# Written from packages.yaml by scripts/refresh_pins.py; change that table."
 DEBIAN = ("debian", "debian-test")  # the second for `make test` alone
-SOURCE = "requirements-source"  # what setup builds; all other lists are wheels
+SOURCE = "requirements-source"  # built from source by setup; all other lists are wheels
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Platform:
 
 @dataclass(frozen=True)
 class Pin:
-    """A version of a package, and the sums (SHA-256) of the files that may be installed."""
+    """A version of a package, and the hashes (SHA-256) of the files that may be installed."""
 
     version: str
     hashes: tuple[str, ...] = ()
@@ -65,7 +65,7 @@ class Table:
 
     @cached_property
     def platforms(self) -> list[Platform]:
-        """All that are served."""
+        """All supported platforms."""
         return [Platform(release, architecture) for release in self.data["releases"]
                 for architecture in self.data["architectures"]]
 
@@ -75,7 +75,7 @@ class Table:
                 for section, rows in self.data[kind].items()}
 
     def requirements(self, platform: Platform) -> dict[str, list[Package]]:
-        """List -> packages, as pip installs them there; SOURCE is empty where all have wheels."""
+        """Packages by list, as pip installs them there; SOURCE is empty if all have wheels."""
         lists: dict[str, list[Package]] = {SOURCE: []}
         for name, packages in self.sections("python").items():
             here = [package for package in packages
@@ -100,7 +100,7 @@ class Table:
         return self.folder / str(platform) / f"{name}.txt"
 
     def pins(self, platform: Platform) -> dict[str, Pin]:
-        """What the lists of a platform have now."""
+        """The pins in a platform's current lists."""
         found: dict[str, Pin] = {}
         for name in self.requirements(platform):
             path = self.path(platform, name)
@@ -130,7 +130,7 @@ def read_pins(text: str) -> dict[str, Pin]:
 
 
 def this_platform() -> Platform:
-    """The machine's."""
+    """This machine's platform."""
     told = dict(line.partition("=")[::2] for line in
                 Path("/etc/os-release").read_text("utf-8").splitlines())
     architecture = subprocess.run(["dpkg", "--print-architecture"], capture_output=True,

@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""Writes the lists of packages in dependencies/ from its table, and says what changed.
+"""Generates the lists of packages in dependencies/ from its table, and says what changed.
 
     scripts/refresh_pins.py                  all releases: the newest versions that the table allows
-    scripts/refresh_pins.py trixie           that release alone
-    scripts/refresh_pins.py --keep           as they are; newest only for what the table has new
+    scripts/refresh_pins.py trixie           only that release
+    scripts/refresh_pins.py --keep           keeps versions; newest ones only for new packages
 
-Needs PyPI, by pip's own settings, and what setup installs. The tests have the last word on
-new versions.
+Needs PyPI, by pip's own settings, and what setup installs. Run the tests with new versions.
 """
 
 from __future__ import annotations
@@ -24,11 +23,11 @@ OLDEST_GLIBC = 5  # the first that manylinux's wheels are named after, of the mi
 
 
 class RefreshError(RuntimeError):
-    """pip did not find what the table asks for; the text is for a person."""
+    """pip did not find what the table requires; the text is for people to read."""
 
 
 def wheel_options(table: Table, platform: Platform) -> list[str]:
-    """What makes pip choose wheels as on that platform."""
+    """Options that make pip choose wheels for that platform."""
     release = table.data["releases"][platform.release]
     machine = table.data["architectures"][platform.architecture]
     tags = [f"manylinux_2_{minor}" for minor in range(release["glibc"], OLDEST_GLIBC - 1, -1)]
@@ -39,7 +38,7 @@ def wheel_options(table: Table, platform: Platform) -> list[str]:
 
 
 def ask_pip(asked: list[str], options: list[str], where: str) -> dict[str, Pin]:
-    """Name (in small letters) -> what pip would install for these requirements."""
+    """What pip would install for these requirements, by name in lower case."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.json"
         done = subprocess.run(
@@ -58,7 +57,7 @@ def ask_pip(asked: list[str], options: list[str], where: str) -> dict[str, Pin]:
 
 def look_up(packages: list[Package], versions: dict[str, str], options: list[str],
             platform: Platform) -> dict[str, Pin]:
-    """Pins of these packages; `versions` has those that are settled."""
+    """Pins of these packages; `versions` has fixed ones."""
     if not packages:
         return {}
     asked = [f"{package.name}=={versions[package.name]}" if package.name in versions
@@ -85,7 +84,7 @@ def resolve(table: Table, release: str, keep: bool) -> dict[Platform, dict[str, 
 
 
 def changes(old: dict[str, Pin], new: dict[str, Pin]) -> list[str]:
-    """A line for each package that is not as before."""
+    """A line for each package that changed."""
     lines = []
     for name in sorted(old.keys() | new.keys(), key=str.lower):
         before, now = old.get(name), new.get(name)
@@ -106,7 +105,7 @@ def listed(text: str) -> set[str]:
 
 
 def write(table: Table, platform: Platform, pins: dict[str, Pin]) -> list[str]:
-    """Write all lists of a platform; a line for each change."""
+    """Write all lists of a platform; returns a line for each change."""
     told = changes(table.pins(platform), pins)
     for list_name in DEBIAN:
         debian = table.path(platform, list_name)
@@ -125,7 +124,7 @@ def write(table: Table, platform: Platform, pins: dict[str, Pin]) -> list[str]:
 
 
 def main() -> int:
-    """The exit code."""
+    """Returns the exit code."""
     table = Table()
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("releases", nargs="*", metavar="RELEASE",

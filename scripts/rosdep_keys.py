@@ -3,7 +3,7 @@
 
     python3 scripts/rosdep_keys.py --ours         after a new package of ours; needs no network
     python3 scripts/rosdep_keys.py                and Debian's, from the lists of a mirror (120 MB)
-    python3 scripts/rosdep_keys.py --lists DIR    the same from what was fetched to DIR
+    python3 scripts/rosdep_keys.py --lists DIR    the same, from lists fetched to DIR
     python3 scripts/rosdep_keys.py --ours --check exit code 1 if they are not what would be written
 """
 
@@ -61,7 +61,7 @@ def debian_text(folder: Path) -> str:
 
 
 def our_packages() -> list[str]:
-    """Names of the packages of src/; other people's workspaces are no part of ours."""
+    """Names of the packages of src/, without those in tests."""
     return [parse(path).getroot().findtext("name", "").strip()
             for path in sorted((ROOT / "src").glob("**/package.xml"))
             if "test" not in path.relative_to(ROOT).parts]

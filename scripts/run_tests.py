@@ -1,13 +1,14 @@
 """Runs ruff, pytest and every rostest file, and ends with one line: N passed, M failed.
 
-What starts processes and mostly waits for them runs a few files at a time: rostest files, and the
-pytest files marked `processes`. Each of these gets a session of its own, a free port for its master
-and a time limit. What it leaves running is killed and counts as a failure. What needs no processes
-is two pytest runs beside them, at low priority: they take the processors while the others wait.
-Files that say `runs alone` measure time: they come last, one after the other.
-A few failed files that start processes run once more, alone, those of pytest only what failed of
-them: a busy machine starves them. They are called unsteady then; a hang or a process left running
-stays a failure.
+Tests that start processes and mostly wait for them run a few files at a time: rostest files, and
+the pytest files marked `processes`. Each gets its own session, a free port for its master, and a
+time limit. A process that it leaves running is killed and counts as a failure. All other tests are
+two pytest runs besides them, at low priority: they use the processors while the others wait. Files
+that say `runs alone` measure time: they run last, one after the other.
+
+If only a few files that start processes fail, they run once more, alone (of pytest files, just the
+failed tests), because a busy machine may starve them. They are then called unsteady; a hang or a
+process left running remains a failure.
 """
 
 from __future__ import annotations
@@ -34,12 +35,12 @@ from run_tests_unsteady import judge_unsteady, read_known
 
 PROCESSES = re.compile(r"^pytestmark = pytest\.mark\.processes\b", re.MULTILINE)
 ALONE = re.compile(r"\bruns alone\b")
-MOST_SECOND = 6  # more failed files than this are no accident
+MOST_SECOND = 6  # more failed files than this are not chance
 
 
 def run_beside(files: list[Path], jobs: int, limit: float,
                beside: Sequence[Callable[[], list[Result]]] = ()) -> list[Result]:
-    """Files that start processes, so many at a time, and beside them runs of other kinds."""
+    """Run files that start processes, `jobs` at a time, and besides them runs of other kinds."""
     results: list[Result] = []
     with ThreadPoolExecutor(jobs) as pool, ThreadPoolExecutor(len(beside) or 1) as others:
         waiting = [others.submit(run) for run in beside]
@@ -53,14 +54,14 @@ def run_beside(files: list[Path], jobs: int, limit: float,
 
 
 def run_file(file: Path, limit: float) -> list[Result]:
-    """One file that starts processes, and its line as soon as it is done."""
+    """Run one file that starts processes, and print its line when done."""
     result = (run_rostest if file.suffix == ".test" else run_pytest_file)(file, limit)
     print(result.line(), flush=True)
     return [result]
 
 
 def run_failed_again(results: list[Result], limit: float) -> list[Result]:
-    """The results, those of failed files replaced by those of a second run alone; not if many."""
+    """The results, with failed files (unless too many) replaced by a second run, alone."""
     if sum(bool(result.failures) for result in results) > MOST_SECOND:
         return results
     return [second_run(result, limit) if may_run_again(result) else result for result in results]
@@ -74,7 +75,7 @@ def may_run_again(result: Result) -> bool:
 
 
 def second_run(first: Result, limit: float) -> Result:
-    """What the file came to when run again; it keeps what the first run failed and printed."""
+    """The file's result when run again; it keeps failures and output of the first run."""
     if processes.stopping:
         return first
     folder = OUT / first.name.replace("/", ".")
@@ -92,20 +93,20 @@ def second_run(first: Result, limit: float) -> Result:
 
 
 def files_that_say(pattern: re.Pattern, glob: str) -> list[Path]:
-    """Files below src and test whose text has the pattern, in the order of their names."""
+    """Files below src and test whose text has the pattern, sorted by name."""
     found = [*ROOT.glob(f"src/**/test/**/{glob}"), *ROOT.glob(f"test/**/{glob}")]
     return sorted(path for path in found if pattern.search(path.read_text(encoding="utf-8")))
 
 
 def show_conformance() -> None:
-    """How much of the interface is there and named by tests."""
+    """Print how much of the interface works and is covered by tests."""
     done = subprocess.run([sys.executable, str(ROOT / "scripts" / "conformance.py")],
                           capture_output=True, text=True, stdin=subprocess.DEVNULL)
     print(f"\n==== conformance\n{done.stdout}{done.stderr}")
 
 
 def run_whole(args: argparse.Namespace, slow: list[Path]) -> list[Result]:
-    """All there is; `slow` are the pytest files that start processes."""
+    """Run all tests; `slow` are the pytest files that start processes."""
     rostests = files_that_say(re.compile(""), "*.test")
     alone = [*files_that_say(ALONE, "test_*.py"), *files_that_say(ALONE, "*.test")]
     apart = [f"--ignore={path}" for path in slow]
@@ -119,7 +120,7 @@ def run_whole(args: argparse.Namespace, slow: list[Path]) -> list[Result]:
 
 
 def run_fast(slow: list[Path]) -> list[Result]:
-    """What takes 90 s: see run_tests_fast.py."""
+    """Run a selection that takes 90 s: see run_tests_fast.py."""
     until = time.time() + BEGIN_WITHIN
     os.environ[UNTIL] = str(until)
     results, ran = [], 0

@@ -1,8 +1,8 @@
-"""Which tests `make test FAST=1` runs: those of what has changed since main, without processes.
+"""Chooses the tests for `make test FAST=1`: for what has changed since main, without processes.
 
-First those that look at all of the code and the changed test files, then the others of each package
-in which anything has changed (for what is in no package: those of test/), then the core's. Each
-of these is one run of pytest, since to collect all tests takes longer than there is time.
+First those that check all of the code and the changed test files, then the others of each package
+with changes (for files in no package: those of test/), then the core's. Each group is one run of
+pytest, since collecting all tests would take too long.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ UNTIL = "TESTS_BEGIN_UNTIL"  # environment variable: s since 1970
 
 
 def fast_groups(apart: Iterable[Path]) -> list[list[Path]]:
-    """The files in the order in which they run, grouped by run; none that is `apart`."""
+    """The test files in order, grouped by run of pytest, without those in `apart`."""
     return choose(changed_files(), set(apart))
 
 
@@ -36,19 +36,19 @@ def choose(changed: list[Path], apart: set[Path]) -> list[list[Path]]:
 
 
 def changed_files() -> list[Path]:
-    """What differs from the commit where this branch left main, and what git does not know yet."""
+    """Files that differ from where this branch left main, and untracked ones."""
     base = next(filter(None, (_git("merge-base", "HEAD", name) for name in MAIN)), "HEAD\n").strip()
     names = _git("diff", "--name-only", base) + _git("ls-files", "--others", "--exclude-standard")
     return [ROOT / name for name in names.splitlines()]
 
 
 def _home(path: Path) -> Path:
-    """The folder of the tests that look at a file: its package's, or the repository's own."""
+    """The folder of a file's tests: its package's, or the repository's own."""
     package = next((folder for folder in path.parents if (folder / "package.xml").exists()), ROOT)
     return package / "test"
 
 
 def _git(*words: str) -> str:
-    """Its output; empty where it fails, as in an archive."""
+    """git's output; empty if it fails, as in an unpacked archive."""
     done = subprocess.run(["git", *words], cwd=ROOT, text=True, capture_output=True)
     return done.stdout if done.returncode == 0 else ""

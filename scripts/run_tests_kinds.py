@@ -1,4 +1,4 @@
-"""How to run ruff, pytest and rostest, with a Result of each."""
+"""Runs ruff, pytest and rostest, with a Result of each."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ PROGRESS = re.compile(r"\[ *\d+%\]$")
 
 
 def run_ruff() -> Result:
-    """The whole tree; counts as one test."""
+    """Check the whole tree; counts as one test."""
     began = time.monotonic()
     done = subprocess.run([shutil.which("ruff") or "ruff", "check", "--output-format=concise"],
                           cwd=ROOT, capture_output=True, text=True, stdin=subprocess.DEVNULL)
@@ -33,7 +33,7 @@ def run_ruff() -> Result:
 
 
 class Progress:
-    """Shows pytest's own progress, a line a file, as soon as each is whole."""
+    """Shows pytest's own progress, a line per file, when the line is complete."""
 
     def __init__(self) -> None:
         self.position = 0
@@ -51,12 +51,12 @@ class Progress:
 
 def run_pytest(limit: float, words: list[str], name: str = "pytest",
                low_priority: bool = False) -> list[Result]:
-    """The files that pytest finds by these words, in one process: a result for each, and one for
-    itself, of this name."""
+    """Run the files that pytest finds by these arguments, in one process: a result for each, and
+    one for the run itself, called `name`."""
     file = OUT / name.replace(" ", "_")
     cases, log = file.with_suffix(".xml"), file.with_suffix(".log")
     whole = Result(name)
-    cases.unlink(missing_ok=True)  # of the group before
+    cases.unlink(missing_ok=True)  # from the previous group
     began = time.monotonic()
     code, left = run_marked([*pytest_command(cases), *words], log, limit, Progress(), low_priority)
     whole.seconds = time.monotonic() - began
@@ -71,13 +71,13 @@ def run_pytest(limit: float, words: list[str], name: str = "pytest",
 
 
 def pytest_command(cases: Path) -> list[str]:
-    """What to run, for results in a file of its own."""
+    """The command of pytest, with results in this file."""
     return [sys.executable, "-m", "pytest", f"--junitxml={cases}", "--color=no", "--tb=short",
             "--continue-on-collection-errors"]
 
 
 def run_pytest_file(path: Path, limit: float, tests: list[str] | None = None) -> Result:
-    """One file in a process of its own, or these tests of it."""
+    """Run one file, or only these tests of it, in a process of its own."""
     name = str(path.relative_to(ROOT))
     result = Result(name)
     if processes.stopping:
@@ -98,7 +98,7 @@ def run_pytest_file(path: Path, limit: float, tests: list[str] | None = None) ->
 
 
 def run_rostest(launch: Path, limit: float) -> Result:
-    """One launch file with its test nodes, which get `limit` seconds together."""
+    """Run one launch file; its test nodes have `limit` seconds in total."""
     result = Result(str(launch.relative_to(ROOT)))
     if processes.stopping:
         return result

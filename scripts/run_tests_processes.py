@@ -1,4 +1,4 @@
-"""Commands under a time limit, of which nothing is left running."""
+"""Runs commands with a time limit, and leaves none of their processes running."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 MARK = "RUN_TESTS_MARK"  # environment variable by which a test's processes are known
-GRACE = 5.0  # s a test's processes have to end after it
-STOP = 15.0  # s rostest has to end its nodes when it is told to stop
+GRACE = 5.0  # s that a test's processes have to end after it
+STOP = 15.0  # s that rostest has to end its nodes when interrupted
 LOW_PRIORITY = 5  # nice
 Watch = Callable[[Path], None]
 
-stopping = False  # set by a signal: what runs is cut short, nothing new begins
+stopping = False  # set by a signal: running tests are cut short, no new ones begin
 
 
 def stop(_signal: int, _frame: object) -> None:
@@ -40,7 +40,7 @@ def processes_marked(mark: str) -> list[int]:
 
 
 def command_line(pid: int) -> str:
-    """What a process was started with, as far as it can still be read."""
+    """A process's command line, if it can still be read."""
     try:
         words = Path(f"/proc/{pid}/cmdline").read_bytes().split(b"\0")
         return b" ".join(words).decode(errors="replace").strip()
@@ -49,7 +49,7 @@ def command_line(pid: int) -> str:
 
 
 def kill_left_over(mark: str, grace: float) -> list[str]:
-    """Command lines of what still runs `grace` seconds on; none of it runs afterwards."""
+    """Kill processes that still run after `grace` seconds; returns their command lines."""
     limit = time.monotonic() + grace
     while (left := processes_marked(mark)) and time.monotonic() < limit:
         time.sleep(0.1)
@@ -66,10 +66,10 @@ def kill_left_over(mark: str, grace: float) -> list[str]:
 
 
 def _give_way(pid: int) -> None:
-    """Lets the processes of other sessions come before this one's."""
+    """Lowers a process's priority, also that of its session."""
     os.setpriority(os.PRIO_PROCESS, pid, os.nice(0) + LOW_PRIORITY)  # 19 at most
     for _ in range(10):
-        try:  # where Linux shares the processors by session, its group has a priority of its own
+        try:  # with autogroup scheduling a session has a priority of its own
             Path(f"/proc/{pid}/autogroup").write_text(str(LOW_PRIORITY))
             return
         except BlockingIOError:
@@ -80,9 +80,9 @@ def _give_way(pid: int) -> None:
 
 def run_marked(command: list[str], log: Path, limit: float, watch: Watch,
                low_priority: bool = False) -> tuple[int, list[str]]:
-    """Exit code (124 after `limit` seconds), and what was left running; `watch` sees the log."""
+    """Exit code (124 after `limit` seconds) and processes left running; `watch` gets the log."""
     mark = uuid.uuid4().hex
-    ros_home = str(log.parent / "ros")  # nothing of a test goes to the person's ~/.ros
+    ros_home = str(log.parent / "ros")  # tests write nothing to the user's ~/.ros
     env = dict(os.environ, **{MARK: mark}, ROS_HOME=ros_home, ROS_LOG_DIR=ros_home)
     end = time.monotonic() + limit
     with log.open("wb") as output:
@@ -105,4 +105,4 @@ def run_marked(command: list[str], log: Path, limit: float, watch: Watch,
 
 
 def unseen(_log: Path) -> None:
-    """The watch for a log that nobody waits for."""
+    """A watch that ignores the log."""

@@ -1,4 +1,4 @@
-"""What tests came to: read from the reports of pytest and rostest, counted and shown."""
+"""Reads, counts and shows test results from the reports of pytest and rostest."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
-# What pytest and rostest say of a test that took too long.
+# Messages of pytest and rostest for a test that took too long.
 TIMED_OUT = re.compile(r"from pytest-timeout|max time \[[^]]*\] allotted")
 SLOWEST = 10
 LATE = "left for make test"  # as conftest.py skips
@@ -17,16 +17,16 @@ LATE = "left for make test"  # as conftest.py skips
 
 @dataclass
 class Result:
-    """What one file of tests came to; `output` is shown if any failed."""
+    """The result of one file of tests; `output` is shown if any failed."""
 
     name: str
     seconds: float = 0.0
     passed: int = 0
     skipped: int = 0
-    late: int = 0  # of these, what `make test FAST=1` had no time for
+    late: int = 0  # of these, those that `make test FAST=1` had no time for
     failures: list[str] = field(default_factory=list)
     failed_cases: list[str] = field(default_factory=list)  # names of the failures that are tests
-    final: bool = False  # a process was left or a time limit reached: no second run mends that
+    final: bool = False  # a process was left or a time limit reached: no second run
     output: str = ""
     first_failures: list[str] = field(default_factory=list)  # of a run before this one
     first_output: str = ""
@@ -52,7 +52,7 @@ class Result:
 
 
 def pytest_cases(cases: Path) -> dict[str, Result]:
-    """A result for each file that the report names; none of a report that was cut off."""
+    """A result for each file in the report; none if the report is incomplete."""
     files: dict[str, Result] = {}
     with contextlib.suppress(FileNotFoundError, ET.ParseError):
         for case in ET.parse(cases).iter("testcase"):
@@ -62,7 +62,7 @@ def pytest_cases(cases: Path) -> dict[str, Result]:
 
 
 def note_end(result: Result, code: int, files: Collection[Result], left: list[str]) -> None:
-    """Count how pytest itself ended, where what the files came to does not say it already."""
+    """Count how pytest itself ended, unless the files' results already show it."""
     failed = any(each.failures for each in files)
     if code == 124:
         result.failures.append(f"{result.name}: not done after {result.seconds:.0f} s")
@@ -72,19 +72,19 @@ def note_end(result: Result, code: int, files: Collection[Result], left: list[st
 
 
 def note_left(result: Result, code: int, left: list[str]) -> None:
-    """Count processes that a test left; like a test that was not done in time they are final."""
+    """Count processes that a test left running; like a timeout they are final."""
     result.failures += [f"{result.name}: left running: {command}" for command in left]
     result.final = result.final or code == 124 or bool(left)
 
 
 def rostest_cases(results: Path) -> list[tuple[bool, ET.Element]]:
-    """(is rostest's own case, case): its own say only whether a test node ran at all."""
+    """(is rostest's own case, case); its own only tell whether a test node ran at all."""
     return [(path.name.startswith("rostest-"), case) for path in sorted(results.rglob("*.xml"))
             for case in ET.parse(path).iter("testcase")]
 
 
 def show_outputs(results: list[Result]) -> None:
-    """What the failed ones printed, in the first run and in the last."""
+    """Print the output of failed files, from the first run and the last."""
     for result in results:
         for title, output in ((f"{result.name}, first run", result.first_output),
                               (result.name, result.output)):
@@ -110,7 +110,7 @@ def show_failed(results: list[Result]) -> None:
 
 
 def show_totals(results: list[Result]) -> bool:
-    """One line, the last; whether something passed and nothing failed."""
+    """Print the last line; returns whether something passed and nothing failed."""
     passed, skipped = sum(each.passed for each in results), sum(each.skipped for each in results)
     failed = sum(len(each.failures) for each in results)
     last = f"{passed} passed, {failed} failed"

@@ -1,4 +1,4 @@
-"""Tests that failed beside others and passed alone: which are known, how many and how often."""
+"""Unsteady tests, which failed besides others but passed alone: known ones, and limits."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from run_tests_processes import ROOT
 from run_tests_results import Result
 
 KNOWN = ROOT / "test" / "unsteady.yaml"
-MOST_NEW = 3  # in one run; more are no accident
-RUNS = 10  # of this user, in which a file that is not known may be unsteady once
+MOST_NEW = 3  # in one run; more are not chance
+RUNS = 10  # of this user, in which an unknown file may be unsteady once
 CACHE = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
 HISTORY = CACHE / "ros1-driving-courses" / "unsteady.json"  # lists of files, a list a run
 
@@ -24,7 +24,7 @@ def read_known(path: Path = KNOWN) -> list[dict]:
 
 
 def is_known(result: Result, known: list[dict]) -> bool:
-    """Whether each test that failed at first is in the list."""
+    """Whether each test that failed in the first run is in the list."""
     return all(any(failure == f"{each['file']}: {each['test']}" if "test" in each
                    else result.name == each["file"] for each in known)
                for failure in result.first_failures)
@@ -33,7 +33,7 @@ def is_known(result: Result, known: list[dict]) -> bool:
 def remember(new: list[str], history: Path = HISTORY) -> list[str]:
     """Add this run's files to the history; returns those that were unsteady in it before."""
     before: list[list[str]] = []
-    with contextlib.suppress(OSError, ValueError, TypeError, KeyError):  # or it is no such list
+    with contextlib.suppress(OSError, ValueError, TypeError, KeyError):  # or its content is invalid
         before = [list(map(str, run)) for run in json.loads(history.read_text("utf-8"))[1 - RUNS:]]
     with contextlib.suppress(OSError):  # a home that is full or cannot be written
         history.parent.mkdir(parents=True, exist_ok=True)
@@ -42,7 +42,7 @@ def remember(new: list[str], history: Path = HISTORY) -> list[str]:
 
 
 def judge_unsteady(results: list[Result], known: list[dict], history: Path = HISTORY) -> list[str]:
-    """Show the unsteady files; returns the failures that new ones are: too many, or again."""
+    """Show the unsteady files; returns failures for new ones that are too many or repeated."""
     unsteady = [result for result in results if result.first_failures and not result.failures]
     new = [result.name for result in unsteady if not is_known(result, known)]
     again = [f"{name}: unsteady twice in {RUNS} runs" for name in remember(new, history)]

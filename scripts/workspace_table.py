@@ -28,7 +28,7 @@ ROS_2 = ("ament_", "rosidl_", "rcutils", "rcpputils", "osrf_", "performance_test
 
 
 def by_setup() -> set[str]:
-    """Debian's packages that setup installs, with those that they depend on, by apt's lists."""
+    """Debian packages installed by setup, with their dependencies, by apt's lists."""
     path = ROOT / f"dependencies/{RELEASE}-amd64/debian.txt"
     text = re.sub(r"#.*", "", path.read_text("utf-8"))
     without = [f"--no-{kind}" for kind in
@@ -39,7 +39,7 @@ def by_setup() -> set[str]:
 
 
 def table(tables: Tables, installed: set[str]) -> str:
-    """Three parts: what is there, what `make deps` installs, what nobody has."""
+    """Three parts: what is installed, what `make deps` installs, what nobody has."""
     plain = other_keys()
     ros = {key: rule["debian"][RELEASE] for key, rule in tables.debian.items()
            if "-" not in key and key not in plain and not key.startswith(ROS_2)

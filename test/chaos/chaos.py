@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Does one bad thing at a random moment to drive after drive, and says what came of it.
+"""Injects one fault at a random moment into drive after drive, and reports the effects.
 
     chaos.py [--rounds N] [--seed N] [--course NAME] [--only FAULT]
 
-A seed is one round, the next round has the next. Exit code 0: nothing found; 1: something, whose
-files stay in out/chaos/; 2: could not run.
+Each round has a seed, the next round the next one. Exit code 0: no faults found; 1: some, whose
+files are kept in out/chaos/; 2: could not run.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def _play(seed: int, options: argparse.Namespace, played: Counter, found: Counte
 
 
 def _start_inside() -> int:
-    """Once more, in a network and a mount namespace of its own: nobody else's suffers."""
+    """Start it again in its own network and mount namespaces, so that no other program suffers."""
     if not shutil.which("unshare") or subprocess.run(
             [*NAMESPACES, "true"], capture_output=True, check=False).returncode:
         raise RunError("this machine allows no namespaces: in Docker give --privileged")

@@ -16,11 +16,11 @@ FAILURE = re.compile(
 RAISED = re.compile(r"^ .*\n(?!KeyboardInterrupt|Exception ignored)([\w.]+)(?=:|$)", re.M)
 LOGGING = re.compile(r'  File "[^"]*/logging/\w+\.py"')
 ROSVERSION = '  File "/usr/bin/rosversion"'
-NO_ENDING = ("course_run: no film", )  # what a run says and goes on
+NO_ENDING = ("course_run: no film", )  # a message after which the run goes on
 
 
 def wrong_words(said: str, code: int | None) -> Iterator[str]:
-    """One who ends early does it with one line."""
+    """A program that ends early must print exactly one line."""
     if _has_traceback(said) or "KeyboardInterrupt" in said:
         yield "the judge prints a traceback"
     lines = [line for line in said.splitlines() if line.startswith(COMPLAINT)
@@ -30,20 +30,20 @@ def wrong_words(said: str, code: int | None) -> Iterator[str]:
 
 
 def wrong_logs(folder: Path) -> Iterator[str]:
-    """Nor does anybody else print a traceback."""
+    """No log may contain a traceback."""
     for path in sorted(folder.glob("*.log")):
         if _has_traceback(path.read_text(encoding="utf-8", errors="replace")):
             yield f"a traceback in {path.name}"
 
 
 def _has_traceback(text: str) -> bool:
-    """But for those that are not ours to keep back."""
+    """Whether there is a traceback that is ours to prevent."""
     return not all(map(_is_anothers, text.split(TRACEBACK)[1:]))
 
 
 def _is_anothers(traceback: str) -> bool:
-    """Python's, of a Ctrl-C while modules load and of a log that the disk has no room for, or that
-    of Debian's rosversion, whose roscore was killed. Of several at once the lines are mixed."""
+    """Python's own, on Ctrl-C while modules load or on a full disk while logging, or that of
+    Debian's rosversion, whose roscore was killed. Lines of simultaneous tracebacks are mixed."""
     raised = RAISED.search(traceback)
     if LOGGING.match(traceback):
         return raised is None or raised[1] == "OSError"
@@ -51,7 +51,7 @@ def _is_anothers(traceback: str) -> bool:
 
 
 def half_files(folder: Path) -> Iterator[str]:
-    """Results that are not whole."""
+    """Yields result files that are incomplete."""
     for path in sorted(folder.rglob("*")):
         named_so = path.parent.name == "log" or ".part" in path.suffixes
         if path.is_file() and not named_so and not _is_whole(path):

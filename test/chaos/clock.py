@@ -1,4 +1,4 @@
-"""A clock that jumps for the Python programs of a round alone (clock.c says how)."""
+"""A clock that jumps only for the Python programs of a round (see clock.c)."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ FILE = "clock"  # in the round's folder
 
 
 def set_clock(folder: Path, seconds: float) -> None:
-    """Ahead of the machine's clock by so much, from now on."""
+    """Set the clock this far ahead of the machine's."""
     with (folder / FILE).open("r+b") as file:
         file.write(struct.pack("d", seconds))
 
 
 def clock_environment(folder: Path) -> dict[str, str]:
-    """For a program that is to have this folder's clock; CalledProcessError without a compiler."""
+    """Environment of a program with this folder's clock; CalledProcessError without a compiler."""
     library = folder / "clock.so"
     subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", str(library), str(SOURCE)], check=True)
     (folder / FILE).write_bytes(struct.pack("d", 0.0))

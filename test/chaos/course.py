@@ -1,4 +1,4 @@
-"""What is driven in a round, and how its processes are known."""
+"""The course of a round, and how its processes are recognised."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class ByHand:
-    """What is typed into terminals instead."""
+    """The commands that are typed into terminals instead."""
 
-    world: tuple[str, ...]  # behind roslaunch: package, file, arguments
-    commands: dict[str, tuple[str, ...]]  # behind rosrun, of each driver
+    world: tuple[str, ...]  # after roslaunch: package, file, arguments
+    commands: dict[str, tuple[str, ...]]  # after rosrun, for each driver
 
 
 SIZE = ("camera_width:=320", "camera_height:=240")  # px, as in a watched drive
@@ -18,13 +18,13 @@ SIZE = ("camera_width:=320", "camera_height:=240")  # px, as in a watched drive
 
 @dataclass(frozen=True)
 class Course:
-    """One of evaluation's courses, with its launch file, model, driver and who moves the car."""
+    """One of evaluation's courses, with its launch file, model, and the nodes that drive."""
 
     name: str
     launch: tuple[str, str]  # package, file
     robot: str
     follower: str
-    drivers: tuple[str, ...]  # nodes without which the car is to stand
+    drivers: tuple[str, ...]  # nodes without which the car must stand still
     by_hand: ByHand
 
 

@@ -1,4 +1,4 @@
-"""One watched drive, as `make course` starts it or by hand, and what a round may do to it."""
+"""One supervised drive, started as by `make course` or by hand, with access to its processes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from states import Place, driven, places
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "src" / "evaluation" / "scripts" / "course_run.py"
-CAMERA = "320x240"  # px; the car is to move, not to keep its line
+CAMERA = "320x240"  # px; the car only has to move, not to keep to the line
 DURATION = 4.0  # s, simulated
 STARTED = 0.02  # m
 LAUNCH = ("chaos_course", "watched.launch")
@@ -23,7 +23,7 @@ PACKAGE = "<package format='2'><name>chaos_course</name><version>0.0.0</version>
 
 
 class Watched(ABC):
-    """A drive whose car is followed by the simulator's own log, and whose processes are known."""
+    """A drive whose car is tracked by the simulator's own log, and whose processes are known."""
 
     def __init__(self, course: Course, folder: Path, environment: dict[str, str]):
         self.course, self.folder = course, folder
@@ -34,11 +34,11 @@ class Watched(ABC):
         (folder / "package.xml").write_text(PACKAGE, encoding="utf-8")
 
     def places(self) -> list[Place]:
-        """The car's so far."""
+        """The car's poses so far."""
         return places(self.states, self.course.robot)
 
     def now(self) -> float:
-        """s, simulated."""
+        """Simulated time, s."""
         seen = self.places()
         return seen[-1][0] if seen else 0.0
 
@@ -48,18 +48,18 @@ class Watched(ABC):
 
     @abstractmethod
     def lives(self) -> bool:
-        """Whether what was started last is there."""
+        """Whether the supervised processes are still running."""
 
     def wait_for(self, condition: Callable[[], object], limit: float) -> bool:
-        """Whether it came true within `limit` s, wall, while that lives."""
+        """Whether the condition became true within `limit` s, wall, while the drive lives."""
         return bool(wait_until(lambda: condition() or not self.lives(), limit) and condition())
 
     def pids(self, victim: str) -> list[int]:
-        """Of one of PATTERNS, or of a node."""
+        """Process ids of one of PATTERNS, or of a node."""
         return matching(self.mark, PATTERNS.get(victim, rf"__name:={victim}\b"))
 
     def close(self, grace: float) -> list[str]:
-        """Command lines of what was left behind; nothing is afterwards."""
+        """Kill processes that were left behind; returns their command lines."""
         return end_left_over(self.mark, grace)
 
     def _write_launch(self, launch: tuple[str, str]) -> None:
@@ -69,7 +69,7 @@ class Watched(ABC):
 
 
 class Drive(Watched):
-    """Started at once; `results` is its folder for results, all else goes to `folder`."""
+    """Starts immediately; `results` is the folder for results, all else goes to `folder`."""
 
     def __init__(self, course: Course, folder: Path, results: Path, fast: bool, film: bool,
                  environment: dict[str, str]):
@@ -87,11 +87,11 @@ class Drive(Watched):
                 env=self._environment)
 
     def lives(self) -> bool:
-        """Whether the judge does."""
+        """Whether the judge is running."""
         return self.judge.poll() is None
 
     def pids(self, victim: str) -> list[int]:
-        """The judge's, too."""
+        """As in the base class, with the judge too."""
         return [self.judge.pid] if victim == "judge" else super().pids(victim)
 
     def wait(self, limit: float) -> int | None:
@@ -102,7 +102,7 @@ class Drive(Watched):
             return None
 
     def close(self, grace: float) -> list[str]:
-        """Command lines of what was left behind; nothing is afterwards."""
+        """Kill processes that were left behind; returns their command lines."""
         if self.lives():
             self.judge.kill()
             self.judge.wait()

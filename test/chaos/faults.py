@@ -1,4 +1,4 @@
-"""What can happen to a drive."""
+"""The faults that can be injected into a drive."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ ENDED, DRIVEN = (2,), (0, 1)  # exit codes of a judge that could not run, and th
 
 @dataclass(frozen=True)
 class Fault:
-    """`begin` does it to a drive, `end` undoes it after a while, if it is undone at all."""
+    """`begin` injects it into a drive, `end` undoes it after a while, if at all."""
 
     name: str
     begin: Callable[[Watched, Random], object]
-    codes: tuple[int, ...]  # what the judge may then end with
-    victim: str = ""  # process or node that it happens to
+    codes: tuple[int, ...]  # allowed exit codes of the judge
+    victim: str = ""  # process or node that it affects
     end: Callable[[Drive], object] | None = None
-    on_tmpfs: bool = False  # results lie on a small disk of their own
-    by_hand: bool = False  # `begin` ends the victim, which is then started again
-    roscore: bool = False  # by hand: there is a master that roslaunch does not end
+    on_tmpfs: bool = False  # results are on a small file system of their own
+    by_hand: bool = False  # `begin` ends the victim, which is then restarted
+    roscore: bool = False  # by hand: the master is not roslaunch's
 
 
 def _kill(victim: str, codes: tuple[int, ...] = ENDED) -> Fault:
@@ -43,7 +43,7 @@ def _kill(victim: str, codes: tuple[int, ...] = ENDED) -> Fault:
 
 
 def _kill_driver(victim: str) -> Fault:
-    """While the judge sleeps, who would end the simulation too soon to see the car stand."""
+    """Kill it while the judge is suspended, which would end the simulation before the car stops."""
 
     def begin(drive: Drive, _: Random) -> None:
         send(drive.pids("judge"), signal.SIGSTOP)
@@ -68,7 +68,7 @@ def _restart(victim: str, killed: bool, roscore: bool = False) -> Fault:
 
 
 def fill_disk(drive: Drive, rng: Random) -> None:
-    """Until nothing, or a little, is left: files then end in their midst."""
+    """Fill the disk until nothing, or a little, is left, so that files are cut off."""
     spare = rng.choice((0, 0, 4096, 16384, 65536, 262144))
     with (drive.results / FILLER).open("wb", buffering=0) as file:
         with contextlib.suppress(OSError):
@@ -78,12 +78,12 @@ def fill_disk(drive: Drive, rng: Random) -> None:
 
 
 def empty_disk(folder: Path) -> None:
-    """Take the filler away again."""
+    """Remove the filler again."""
     (folder / FILLER).unlink(missing_ok=True)
 
 
 def set_loopback(up: bool) -> None:
-    """Of this process's network namespace."""
+    """Set the loopback of this process's network namespace up or down."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         asked = struct.pack("16sh14x", b"lo", 0)
         flags = struct.unpack("16sh14x", fcntl.ioctl(probe, GET_FLAGS, asked))[1]
@@ -92,13 +92,13 @@ def set_loopback(up: bool) -> None:
 
 
 def jump_clock(drive: Drive, rng: Random) -> None:
-    """Forward or back, by seconds or by hours; it stays there."""
+    """Move the clock forward or back, by seconds or hours, and leave it there."""
     seconds = rng.choice((1.0, LONGEST_JUMP)) * rng.uniform(-1.0, 1.0) * 10.0
     set_clock(drive.folder, seconds)
 
 
 def faults_of(drivers: tuple[str, ...]) -> list[Fault]:
-    """All that can happen to a drive with these driving nodes."""
+    """All faults of a drive with these driving nodes."""
     others = ("simulator", "master", "roscore", "roslaunch")
     return [*map(_kill_driver, drivers), *map(_kill, others), _kill("judge", (-signal.SIGKILL,)),
             _kill("encoder", DRIVEN), *map(_stop, (*drivers, *others, "judge")),

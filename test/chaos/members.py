@@ -1,4 +1,4 @@
-"""All processes of a round, whoever has started them: they carry its mark."""
+"""All processes of a round, recognised by its mark, whatever started them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ POLL = 0.05  # s
 
 
 def members(mark: str) -> dict[int, str]:
-    """Command lines by process id, of those that live."""
+    """Command lines of running processes, by process id."""
     needle, found = f"{MARK}={mark}".encode(), {}
     for folder in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):  # gone by now, or another user's
@@ -26,19 +26,19 @@ def members(mark: str) -> dict[int, str]:
 
 
 def matching(mark: str, pattern: str) -> list[int]:
-    """Ids of those whose command line has this regular expression."""
+    """Ids of those whose command line matches this regular expression."""
     return [pid for pid, line in members(mark).items() if re.search(pattern, line)]
 
 
 def send(pids: list[int], number: signal.Signals) -> None:
-    """A signal to those that still live."""
+    """Send a signal to those that still run."""
     for pid in pids:
         with contextlib.suppress(ProcessLookupError):
             os.kill(pid, number)
 
 
 def wait_until(condition: Callable[[], object], limit: float) -> bool:
-    """Whether it came true within `limit` s, wall."""
+    """Whether the condition became true within `limit` s, wall."""
     until = time.monotonic() + limit
     while not condition():
         if time.monotonic() > until:
@@ -48,7 +48,7 @@ def wait_until(condition: Callable[[], object], limit: float) -> bool:
 
 
 def end_left_over(mark: str, grace: float) -> list[str]:
-    """Command lines of what lives `grace` s, wall, on; none of it does afterwards."""
+    """Kill processes that still run after `grace` s, wall; returns their command lines."""
     wait_until(lambda: not members(mark), grace)
     left = members(mark)
     lines = list(left.values())

@@ -1,4 +1,4 @@
-"""One round by hand: one part of a drive ends at a random moment and is started again."""
+"""A round by hand: one part of a drive ends at a random moment and is restarted."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ class PlayByHand:
         self._round, self._folder = played, folder
         self._victim = played.fault.victim
         self._terminal = OWNERS.get(self._victim, self._victim)
-        # What a killed roslaunch leaves has the names of what is started next: rosmaster would ask
-        # the old one to end, and the new one when the old one next logs.
+        # Nodes left by a killed roslaunch have the names of those started next: rosmaster would
+        # shut down the old one, and the new one when the old one next logs.
         self._leaves_nodes = self._victim == "roslaunch" and played.fault.roscore
         self._rng = Random(f"{played.course.name}/{played.seed}/act")
 
     @property
     def _without_master(self) -> bool:
-        """Whether those that stay are unknown to the master of afterwards: they do not register
-        again by themselves, nor do rospy's nodes anywhere."""
+        """Whether the remaining nodes are unknown to the new master: they do not register again
+        by themselves, as no rospy node does."""
         return self._terminal == ROSCORE or (self._terminal == WORLD and not self._round.roscore)
 
     def faults(self) -> list[str]:
-        """What is wrong, one line each."""
+        """Play the round; returns the errors found, one line each."""
         self._folder.mkdir(parents=True)
         return list(dict.fromkeys(self._play()))
 
@@ -60,7 +60,7 @@ class PlayByHand:
         else:
             there = hands.start_usual(START_LIMIT) and hands.wait_for(hands.moves, START_LIMIT)
         if there:
-            time.sleep(self._round.delay)  # a random moment: nothing is waited for
+            time.sleep(self._round.delay)  # a random moment, not a wait
         return there
 
     def _restart(self, hands: Terminals) -> Iterator[str]:
@@ -73,12 +73,12 @@ class PlayByHand:
         if self._terminal in hands.open and not hands.ended(self._terminal, END_LIMIT):
             yield f"{self._terminal} has not ended"
             return
-        time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # what is tried, no waiting
+        time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # part of the test, not a wait
         since = hands.now() if self._victim in self._round.course.drivers else 0.0
         if self._leaves_nodes and not hands.kill_nodes(END_LIMIT):
             yield "nodes do not end by rosnode kill -a"
             return
-        if self._terminal == ROSCORE and self._round.starting:  # roslaunch may bring its own then
+        if self._terminal == ROSCORE and self._round.starting:  # roslaunch may start its own then
             yield from self._end_others(hands, told)
         hands.start(self._terminal)
         if self._leaves_nodes:
@@ -98,7 +98,7 @@ class PlayByHand:
         yield from self._wrong_nodes(hands)
 
     def _meanwhile(self, hands: Terminals) -> Iterator[str]:
-        """Without its driver the car stands; without a master or roslaunch it drives on."""
+        """Without its driver the car must stop; without a master or roslaunch it must drive on."""
         since = hands.now()
         if self._round.starting:
             return
@@ -112,11 +112,11 @@ class PlayByHand:
             yield "does not drive on"
 
     def _start_others_again(self, hands: Terminals, told: dict[str, int]) -> Iterator[str]:
-        """All that the new master does not know."""
+        """Restart all nodes that the new master does not know."""
         if not hands.start_usual(START_LIMIT, self._terminal):
             yield f"{self._terminal} does not start again"
             return
-        time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # what is tried, no waiting
+        time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # part of the test, not a wait
         yield from self._end_others(hands, told)
 
     def _end_others(self, hands: Terminals, told: dict[str, int]) -> Iterator[str]:
@@ -126,14 +126,14 @@ class PlayByHand:
             yield from _end(hands, name)
 
     def _wrong_nodes(self, hands: Terminals) -> Iterator[str]:
-        """Of the world; not while it starts without a master."""
+        """Dead nodes of the world; not while it starts without a master."""
         if WORLD in hands.open and not (self._round.starting and self._without_master):
             for node in sorted(hands.dead_nodes() - {self._victim}):
                 yield f"node {node} has died"
 
 
 def ended_by_themselves(hands: Terminals, told: dict[str, int], but: str) -> Iterator[str]:
-    """They say why in one line, roslaunch in a banner, and are to be started again."""
+    """Close terminals whose command ended by itself, which must print one line (roslaunch: any)."""
     for name in [name for name in hands.open if name != but]:
         if hands.open[name].poll() is not None:
             hands.ended(name, 0.0)

@@ -1,4 +1,4 @@
-"""One round: a drive, a fault at a random moment, and what is wrong afterwards."""
+"""One round: a drive, a fault at a random moment, and the checks afterwards."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ from faults import CLOCK, Fault, empty_disk, faults_of
 from members import wait_until
 from states import STOP_TIME, drives_on
 
-START_LIMIT, END_LIMIT = 600.0, 240.0  # s, wall, on a machine with other work
-GRACE = 60.0  # s, wall, on such a machine
+START_LIMIT, END_LIMIT = 600.0, 240.0  # s, wall, on a busy machine
+GRACE = 60.0  # s, wall, on a busy machine
 LONGEST_STOP = 3.0  # s, wall
 DISK = "size=24m"
 RESULTS = "results"  # in the folder of a round that failed
-WATCHED = STOP_TIME + 0.3  # s, simulated, for which a car without a driver is looked at
+WATCHED = STOP_TIME + 0.3  # s, simulated, for which a car without a driver is observed
 WATCH_LIMIT = 100.0  # s, wall, for that: in lockstep the world waits a second for each image
 
 
 @dataclass(frozen=True)
 class Round:
-    """What a seed stands for."""
+    """The fault and timing that a seed determines."""
 
     course: Course
     seed: int
     fault: Fault
     fast: bool
     film: bool
-    starting: bool  # it happens before the car drives
+    starting: bool  # the fault comes before the car drives
     delay: float  # s, wall
-    roscore: bool  # by hand: in a terminal of its own, not roslaunch's
+    roscore: bool  # by hand: roscore runs in a terminal of its own, not roslaunch's
 
     @property
     def title(self) -> str:
@@ -48,7 +48,7 @@ class Round:
 
 
 def drawn(course: Course, seed: int, only: str = "") -> Round:
-    """The round of this seed; of those faults whose name begins so."""
+    """The round of this seed, among faults whose name begins with `only`."""
     rng = Random(f"{course.name}/{seed}")
     choice = [each for each in faults_of(course.drivers) if each.name.startswith(only)]
     fault = rng.choice(choice)
@@ -59,7 +59,7 @@ def drawn(course: Course, seed: int, only: str = "") -> Round:
 
 
 class Play:
-    """Plays a round in a folder; `results` is that of rounds before, too."""
+    """Plays a round in a folder; `results` is shared with earlier rounds."""
 
     def __init__(self, played: Round, folder: Path, results: Path):
         self._round, self._folder, self._results = played, folder, results
@@ -67,12 +67,12 @@ class Play:
 
     @property
     def _without_driver(self) -> bool:
-        """Whether the car is to stand meanwhile."""
+        """Whether the car must stand still meanwhile."""
         played = self._round
         return played.fault.victim in played.course.drivers and not played.starting
 
     def faults(self) -> list[str]:
-        """What is wrong, one line each."""
+        """Play the round; returns the errors found, one line each."""
         played = self._round
         self._folder.mkdir(parents=True)
         self._results.mkdir(parents=True, exist_ok=True)
@@ -120,24 +120,24 @@ class Play:
         else:
             there = drive.wait_for(drive.moves, START_LIMIT)
         if there:
-            time.sleep(played.delay)  # a random moment: nothing is waited for
+            time.sleep(played.delay)  # a random moment, not a wait
         return there
 
     def _is_victim_there(self, drive: Drive) -> bool:
-        """Near its end there need be none."""
+        """Whether the victim runs; near the drive's end it need not."""
         victim = self._round.fault.victim
         return bool(not victim or drive.pids(victim) or drive.judge.poll() is not None
                     or _is_late(drive.now()))
 
     def _act(self, drive: Drive) -> tuple[float, float]:
-        """From when until when, s, simulated, it lasted."""
+        """Inject the fault; returns its begin and end, s, simulated."""
         fault = self._round.fault
         fault.begin(drive, self._rng)
         since = drive.now()
         if fault.end is None:
             return since, math.inf
         try:
-            time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # what is tried, no waiting
+            time.sleep(self._rng.uniform(0.3, LONGEST_STOP))  # part of the test, not a wait
             if self._without_driver:
                 wait_until(lambda: drive.now() > since + WATCHED, WATCH_LIMIT)
             return since, drive.now()
@@ -145,7 +145,7 @@ class Play:
             fault.end(drive)
 
     def _codes(self, since: float) -> tuple[int, ...]:
-        """Near its end it may have ended before."""
+        """The allowed exit codes; near its end the drive may have ended before the fault."""
         codes = self._round.fault.codes
         return (*codes, 0, 1) if _is_late(since) else codes
 

@@ -1,4 +1,4 @@
-"""Where the car truly was, from the file that the simulator writes."""
+"""The car's true poses, from the simulator's state log."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import json
 import math
 from pathlib import Path
 
-STANDS, TURNS = 0.02, 0.05  # m/s, rad/s: less is none
-STOP_TIME = 0.7  # s, simulated, in which a car without a driver is to stand
-SETTLED = 0.5  # s, simulated: a car that is put down drops and rolls a little
+STANDS, TURNS = 0.02, 0.05  # m/s, rad/s: less counts as standing still
+STOP_TIME = 0.7  # s, simulated, within which a car without a driver must stop
+SETTLED = 0.5  # s, simulated: a spawned car drops and rolls a little
 Place = tuple[float, float, float, float]  # s, simulated; x, y, m; yaw, rad
 
 
 def places(path: Path, robot: str) -> list[Place]:
-    """All of the car, in order; the last line may still be half there."""
+    """All poses of the car, in order; an incomplete last line is ignored."""
     found = []
     if path.exists():
         for line in path.read_text(encoding="utf-8").splitlines(keepends=True):
@@ -34,13 +34,13 @@ def moves(before: Place, after: Place) -> bool:
 
 
 def driven(seen: list[Place]) -> float:
-    """m, as the crow flies, after it was put down."""
+    """Straight distance (m) since it settled after spawning."""
     settled = [place for place in seen if place[0] > seen[0][0] + SETTLED]
     return math.dist(settled[0][1:3], settled[-1][1:3]) if settled else 0.0
 
 
 def drives_on(seen: list[Place], since: float, until: float) -> str | None:
-    """What is wrong with a car without a driver between these times, s; None: it stood in time."""
+    """An error if a car without a driver moves between these times, s; None: it stopped in time."""
     late = [place for place in seen if since + STOP_TIME <= place[0] <= until]
     for before, after in itertools.pairwise(late):
         if moves(before, after):

@@ -1,4 +1,4 @@
-"""A drive by hand: a master, the world and who drives in it, each in a terminal of its own."""
+"""A drive by hand: a master, the world and the drivers, each in a terminal of its own."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from members import matching, send, wait_until
 from run_session.launch import DIED, USUAL_PORT, is_up
 from run_session.processes import read_log
 
-MASTER = f"http://localhost:{USUAL_PORT}"  # nobody else's: a round has a network of its own
+MASTER = f"http://localhost:{USUAL_PORT}"  # not shared: a round has a network of its own
 ROSCORE, WORLD = "roscore", "world"  # terminals; others have their driver's name
 OWNERS = {"simulator": WORLD, "roslaunch": WORLD, "master": ROSCORE}  # their terminals
 
-CORE_IS_UP = "started core service"  # a roscore whose master is killed before does not end well
-# Of roslaunch's, but for roscore's own, and for what is no node and ends with the master.
+CORE_IS_UP = "started core service"  # before this line, roscore does not cope with a killed master
+# Nodes of roslaunch, without roscore's own, and without gazebo_gui, which ends with the master.
 NODE = r"__name:=(?!rosout\b|gazebo_gui\b)"
 
 
@@ -30,7 +30,7 @@ class Terminals(Watched):
     """A terminal is open from the start of its command to its end; it may be opened again."""
 
     def __init__(self, course: Course, folder: Path, roscore: bool):
-        """Without `roscore` it is roslaunch that starts a master, and ends it."""
+        """Without `roscore`, roslaunch starts the master, and ends it."""
         super().__init__(course, folder, {
             "ROS_MASTER_URI": MASTER, "ROS_LOG_DIR": str(folder / "log" / "ros"),
             "PYTHONUNBUFFERED": "1"})
@@ -41,17 +41,17 @@ class Terminals(Watched):
         (folder / "log").mkdir()
 
     def lives(self) -> bool:
-        """Whether nothing has ended by itself."""
+        """Whether no command has ended by itself."""
         return all(process.poll() is None for process in self.open.values())
 
     def pids(self, victim: str) -> list[int]:
-        """Of drivers by their file: most choose a name of their own."""
+        """Process ids; drivers are matched by file, as most choose their own node name."""
         if words := self.course.by_hand.commands.get(victim):
             return matching(self.mark, re.escape(words[1]))
         return super().pids(victim)
 
     def start(self, name: str) -> None:
-        """Type its command."""
+        """Start the command of this terminal."""
         log = self.folder / "log" / f"{name}-{len(self._logs.setdefault(name, []))}.log"
         self._logs[name].append(log)
         with log.open("wb") as output:
@@ -61,8 +61,8 @@ class Terminals(Watched):
                 env=self._environment)
 
     def start_usual(self, limit: float, last: str = "") -> bool:
-        """Start what is not open, each when what it needs is there; whether it is within `limit`,
-        s, wall, each. That of `last` is not waited for."""
+        """Start terminals that are not open, each once what it needs is up; False if one takes
+        longer than `limit`, s, wall. Does not wait for that of `last`."""
         for name in self.usual:
             if name not in self.open:
                 self.start(name)
@@ -73,8 +73,8 @@ class Terminals(Watched):
         return True
 
     def interrupt(self, victim: str) -> None:
-        """Ctrl-C in the terminal of one of PATTERNS or a driver; one that roslaunch has started
-        has none."""
+        """Ctrl-C in the terminal of one of PATTERNS or a driver; a node started by roslaunch has
+        no terminal and gets the signal itself."""
         if terminal := self.open.get(OWNERS.get(victim, victim)):
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(terminal.pid, signal.SIGINT)
@@ -82,15 +82,15 @@ class Terminals(Watched):
             send(self.pids(victim), signal.SIGINT)
 
     def ended(self, name: str, limit: float) -> bool:
-        """Whether its command is over within `limit` s, wall; the terminal is closed then."""
+        """Whether its command ends within `limit` s, wall; the terminal is then closed."""
         if not wait_until(lambda: self.open[name].poll() is not None, limit):
             return False
         del self.open[name]
         return True
 
     def kill_nodes(self, limit: float) -> bool:
-        """`rosnode kill -a`, again for those that were only starting; whether nothing that
-        roslaunch has started is left within `limit`, s, wall."""
+        """`rosnode kill -a`, repeated for nodes that were still starting; whether all nodes started
+        by roslaunch end within `limit`, s, wall."""
 
         def are_gone() -> bool:
             if not matching(self.mark, NODE):
@@ -102,11 +102,11 @@ class Terminals(Watched):
         return wait_until(are_gone, limit)
 
     def said(self, name: str) -> list[str]:
-        """Lines, since its command was typed last."""
+        """Output lines since its command was last started."""
         return read_log(self._logs[name][-1])
 
     def dead_nodes(self) -> set[str]:
-        """Of this world, those that did not end well."""
+        """Nodes of this world that died."""
         return {found[1].rsplit("-", 1)[0] for found in DIED.finditer("\n".join(self.said(WORLD)))}
 
     def _command(self, name: str) -> list[str]:

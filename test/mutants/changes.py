@@ -1,4 +1,4 @@
-"""Which small changes of a source file there are: cosmic-ray's operators, and where they act."""
+"""The possible small changes of a source file: cosmic-ray's operators, and where they apply."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ SIMULATOR = ROOT / "src/sim/bullet_sim/src/bullet_sim"
 NAVIGATION = ROOT / "src/navigation/nav_algorithms/src/nav_algorithms"
 PACKAGES = {**{name: SIMULATOR / name for name in ("physics", "formats", "sensors", "control")},
             NAVIGATION.name: NAVIGATION}
-NEED_NAMES = {"VariableInserter", "VariableReplacer"}  # of the variables to act on
-SIGNS = {"Add", "Sub", "Mul", "Div", "FloorDiv", "Mod", "Pow"}  # the other binary ones are of bits
+NEED_NAMES = {"VariableInserter", "VariableReplacer"}  # operators that need names of variables
+SIGNS = {"Add", "Sub", "Mul", "Div", "FloorDiv", "Mod", "Pow"}  # the other binary ones are bitwise
 
 
 @dataclass(frozen=True)
@@ -37,13 +37,13 @@ class Mutant:
     path: Path
     node: int  # its number in cosmic-ray's walk
     operator: str
-    index: int  # of what the operator can do to that node
+    index: int  # of the operator's variants for that node
     line: int
     column: int
 
     @property
     def place(self) -> str:
-        """For a person."""
+        """File and line, for messages."""
         return f"{self.path.relative_to(ROOT)}:{self.line}"
 
     @cached_property
@@ -67,11 +67,11 @@ class Mutant:
 
     @property
     def key(self) -> str:
-        """Another one as soon as anything in the file is."""
+        """A key that changes with anything in the file."""
         return hashlib.sha256(f"{self.place}\n{self.source}".encode()).hexdigest()
 
     def runs(self) -> bool:
-        """Whether it is Python at all, and other code than before."""
+        """Whether it is valid Python, and differs from the original code."""
         try:
             return (ast.dump(ast.parse(self.source)) !=
                     ast.dump(ast.parse(_text(self.path))))
@@ -80,13 +80,13 @@ class Mutant:
 
 
 class Equal:
-    """equal.yaml: changes that change nothing, each with its reason."""
+    """equal.yaml: changes without any effect, each with its reason."""
 
     def __init__(self, path: Path = Path(__file__).with_name("equal.yaml")) -> None:
         self._rows = yaml.safe_load(path.read_text("utf-8"))
 
     def why(self, mutant: Mutant) -> str | None:
-        """None if nothing is known of it."""
+        """The reason why the mutant is equal; None if it is not listed."""
         before, after = mutant.lines
         for row in self._rows["kinds"]:
             if re.fullmatch(row["before"], before) and re.fullmatch(row.get("after", ".*"), after):
@@ -99,7 +99,7 @@ class Equal:
 
 
 def module_name(path: Path) -> str:
-    """What a file of the core is imported as; what lies beside the tests has its own name."""
+    """The module name of a file of the core; a file beside the tests has its stem as name."""
     for package in (SIMULATOR, NAVIGATION):
         if path.is_relative_to(package):
             words = path.relative_to(package.parent).with_suffix("").parts
@@ -108,7 +108,7 @@ def module_name(path: Path) -> str:
 
 
 def drawn(seed: int) -> Iterator[Mutant]:
-    """One change at each place, each place as likely, in an order of chance."""
+    """One change at each place, in random order, all places being equally likely."""
     places: dict[tuple, list[Mutant]] = {}
     for package, folder in PACKAGES.items():
         for path in sorted(folder.rglob("*.py")):
@@ -121,7 +121,7 @@ def drawn(seed: int) -> Iterator[Mutant]:
 
 
 def mutants(package: str, path: Path) -> Iterator[Mutant]:
-    """All of a file, those that are no Python among them; annotations stay as they are."""
+    """All mutants of a file, including invalid Python; annotations are not changed."""
     text = _text(path)
     spared = list(_annotations(text))
     for number, node in enumerate(ast_nodes(parso.parse(text))):
@@ -141,7 +141,7 @@ def _annotations(text: str) -> Iterator[tuple[tuple[int, int], tuple[int, int]]]
 
 @lru_cache
 def _operators() -> dict[str, Operator]:
-    """Those that leave an operation to operands that know it: `1.0 << 2` is noticed by any test."""
+    """The operators that keep operations valid for their operands: any test notices `1.0 << 2`."""
     known = OperatorProvider()
     return {name: known[name]() for name in known
             if name not in NEED_NAMES and not _of_another_kind(name)}

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Changes the core's code in small ways, one at a time, and counts what its tests notice.
+"""Mutation testing: makes small changes to the core's code, and counts those that tests notice.
 
     mutants.py [--sample N] [--seed N]
 
-Begun again it goes on where it stopped, and tries once more what no test had noticed when the tests
-were others. What is unnoticed is in out/mutants/unnoticed.diff. Exit code 0: at least 85 % are
-noticed; 1: fewer; 2: could not run.
+If restarted, it resumes, and retries mutants that were not noticed if the tests have changed since.
+Unnoticed mutants are in out/mutants/unnoticed.diff. Exit code 0: at least 85 % are noticed; 1:
+fewer; 2: could not run.
 """
 
 from __future__ import annotations
@@ -58,39 +58,39 @@ def _try(mutant: Mutant, number: int, recorded: Recording, kept: Kept) -> str:
 
 
 class Kept:
-    """results.jsonl: what came of each mutant so far."""
+    """results.jsonl: the result of each mutant so far."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self._rows = {}
         if path.exists():
             for line in path.read_text("utf-8").splitlines():
-                with contextlib.suppress(ValueError):  # half a line: it was killed
+                with contextlib.suppress(ValueError):  # an incomplete line: the program was killed
                     row = json.loads(line)
                     self._rows[row["key"]] = row
 
     def known(self, mutant: Mutant, stamp: str) -> str | None:
-        """None if it is to be tried; `stamp` is of the tests."""
+        """The known result; None if it is to be tried. `stamp` identifies the tests."""
         row = self._rows.get(mutant.key)
         fresh = row and (row["result"] != "unnoticed" or row["stamp"] == stamp)
         return row["result"] if fresh else None
 
     def add(self, mutant: Mutant, stamp: str, result: str, by: str) -> None:
-        """At once, so that nothing is lost."""
+        """Append a result immediately, so that nothing is lost."""
         with self._path.open("a", encoding="utf-8") as file:
             file.write(json.dumps({"key": mutant.key, "place": mutant.place, "result": result,
                                    "by": by, "change": mutant.lines, "stamp": stamp}) + "\n")
 
 
 def difference(mutant: Mutant) -> str:
-    """As `diff -u` would show it, under its place."""
+    """The mutant as `diff -u` would show it, below its place."""
     before = mutant.path.read_text("utf-8").splitlines(keepends=True)
     return f"{mutant.place}\n" + "".join(islice(difflib.unified_diff(
         before, mutant.source.splitlines(keepends=True), n=2), 2, None)) + "\n"
 
 
 def report(results: list[tuple[Mutant, str]]) -> float:
-    """Print the table; returns what part is noticed of what is not equal."""
+    """Print the table; returns the noticed share of the mutants that are not equal."""
     counts = Counter((mutant.package, result) for mutant, result in results)
     print(f"{'package':15} {'mutants':>7} " + " ".join(f"{name:>9}" for name in OUTCOMES)
           + "  noticed of those not equal")

@@ -1,4 +1,4 @@
-"""Which tests run which line: once, without any change, and kept until the code is another."""
+"""Records which tests run which line, once, without any change, until the code changes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ IMPORTED = ""  # in place of a test
 
 
 class Recorder:
-    """For pytest: each line that runs is a test's, or all of a file's that shares a fixture."""
+    """A pytest plugin: assigns each executed line to a test, or to a shared fixture's file."""
 
     def __init__(self) -> None:
         self.coverage = coverage.Coverage(
@@ -34,7 +34,7 @@ class Recorder:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Iterator[None]:
-        """From its set-up to its tear-down."""
+        """Record a test from set-up to tear-down."""
         self.coverage.switch_context(item.nodeid)
         began = time.process_time()
         result = yield
@@ -44,7 +44,7 @@ class Recorder:
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef,
                              request: pytest.FixtureRequest) -> Iterator[None]:
-        """A shared one is set up for one test but is seen by others."""
+        """A shared fixture is set up for one test but used by others."""
         if fixturedef.scope == "function" or not fixturedef.baseid:
             return (yield)
         self.coverage.switch_context(fixturedef.baseid)
@@ -53,13 +53,13 @@ class Recorder:
         return result
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Those that fail anyway say nothing of a change."""
+        """Tests that fail without a change cannot detect one."""
         if report.failed:
             self.failed.append(report.nodeid)
 
 
 class Recording:
-    """What was recorded, and which tests a mutant is shown to."""
+    """The recorded data, and the choice of tests for a mutant."""
 
     def __init__(self, kept: dict) -> None:
         self.stamp: str = kept["stamp"]
@@ -79,8 +79,8 @@ class Recording:
                     self._reach[name] += 1
 
     def groups(self, mutant: Mutant, first: int = 20) -> list[dict[str, float]]:
-        """Tests that may notice it, with their seconds; a few that are short and to the point
-        first."""
+        """Tests that may notice it, with their seconds; first a few that are short and run few
+        other lines."""
         tree = ast.parse(mutant.path.read_text("utf-8"))
         lines = self._lines.get(mutant.path, {})
         statement = set(_statement(tree, mutant.line))
@@ -102,7 +102,7 @@ class Recording:
                 yield from (test for test in self._seconds if test.startswith(f"{name}::"))
 
     def _of_files(self, paths: set[Path]) -> set[str]:
-        """Tests that run a line of one of them, or stand in one."""
+        """Tests that run a line of one of these files, or are in one."""
         within = {str(path.relative_to(ROOT)) for path in paths}
         return {name for path in paths for names in self._lines.get(path, {}).values()
                 for name in names} | {
@@ -110,7 +110,7 @@ class Recording:
 
 
 def recording(file: Path) -> Recording:
-    """What the file keeps, or, if the code or a test is another since, a new one."""
+    """The recording in the file, or a new one if the code or a test has changed since."""
     stamp = hashlib.sha256(b"".join(
         path.read_bytes() for folder in FOLDERS
         for path in sorted(folder.rglob("*.py")))).hexdigest()
@@ -144,7 +144,7 @@ def _record() -> str:
 
 
 def _statement(tree: ast.Module, line: int) -> range:
-    """Lines of the statement that has this one, of a compound one those before its body."""
+    """Lines of the statement with this line; of a compound statement, those before its body."""
     found = range(line, line + 1)
     for node in ast.walk(tree):
         if isinstance(node, ast.stmt | ast.ExceptHandler):
@@ -158,14 +158,14 @@ def _statement(tree: ast.Module, line: int) -> range:
 
 
 def _is_compiled(tree: ast.Module, line: int) -> bool:
-    """Whether it is in a function of which Numba makes machine code: no trace shows its lines."""
+    """Whether the line is in a function compiled by Numba, which no trace shows."""
     return any(isinstance(node, ast.FunctionDef) and node.lineno <= line <= node.end_lineno
                and any("compiled" in ast.unparse(each) for each in node.decorator_list)
                for node in ast.walk(tree))
 
 
 def _importers(path: Path, far: bool) -> set[Path]:
-    """The file and those of the core and its tests that import it; far: and who imports these."""
+    """The file and its importers in core and tests; `far`: and their importers, too."""
     found, new = {path}, {path}
     while new:
         names = {module_name(each) for each in new}

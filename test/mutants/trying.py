@@ -1,4 +1,4 @@
-"""Runs tests in a process of its own, forked where NumPy, Bullet and Numba are loaded already."""
+"""Runs tests in a process forked from one that has NumPy, Bullet and Numba loaded."""
 
 from __future__ import annotations
 
@@ -21,53 +21,53 @@ import pytest
 from changes import NAVIGATION, ROOT, SIMULATOR, Mutant, module_name
 
 OURS = (SIMULATOR.name, NAVIGATION.name)
-LEAST, FACTOR = 10.0, 10.0  # a test may take so many s of processor time, and times the usual
-IMPORT = 180.0  # s of processor time until the first test, compiled loops among it
-LONGEST = 3600.0  # s, wall, for one change: others may have the processor
-MEMORY = 4 << 30  # bytes on top of what the process has at its start
+LEAST, FACTOR = 10.0, 10.0  # a test may take this CPU time: s, plus times the usual
+IMPORT = 180.0  # s of CPU time until the first test, including compilation
+LONGEST = 3600.0  # s, wall, for one change, on a busy machine
+MEMORY = 4 << 30  # bytes in addition to the process's memory at its start
 
 
 class Changed(MetaPathFinder, SourceFileLoader):
-    """Imports a mutant in place of its file, which stays as it is."""
+    """Imports a mutant in place of its file, which is not changed."""
 
     def __init__(self, mutant: Mutant) -> None:
         super().__init__(module_name(mutant.path), str(mutant.path))
         self._source = mutant.source
 
     def find_spec(self, name: str, path: object = None, target: object = None) -> ModuleSpec | None:
-        """Of the one module."""
+        """A spec for this module only."""
         return spec_from_file_location(name, self.path, loader=self) if name == self.name else None
 
     def get_code(self, name: str) -> CodeType:
-        """Never what was kept of it."""
+        """Compile it afresh, never from the cache."""
         return compile(self._source, self.path, "exec", dont_inherit=True)
 
 
 class Chosen:
-    """For pytest: these tests in this order, each within its time; remembers what failed."""
+    """A pytest plugin: runs these tests in order, with time limits; records failures."""
 
     def __init__(self, limits: dict[str, float]) -> None:
         self._limits = limits
         self.failed: list[str] = []
 
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Leave out the others."""
+        """Keep only the chosen tests."""
         found = {item.nodeid: item for item in items}
         items[:] = [found[name] for name in self._limits if name in found]
 
     def pytest_runtest_logstart(self, nodeid: str) -> None:
-        """A signal ends the process when the test takes too long."""
+        """Set a limit at which a signal ends the process."""
         limit = LEAST + FACTOR * self._limits[nodeid]
         _limit(time.process_time() + limit)
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """The first one says all."""
+        """Record a failure; the first one suffices."""
         if report.failed:
             self.failed.append(report.nodeid)
 
 
 def warm_up() -> None:
-    """Load what our modules import, without them."""
+    """Load all modules that ours import, but not ours."""
     import_all()
     for name in list(sys.modules):
         if name.partition(".")[0] in OURS:
@@ -75,7 +75,7 @@ def warm_up() -> None:
 
 
 def import_all() -> None:
-    """Every module of the core."""
+    """Import every module of the core."""
     for name in OURS:
         package = importlib.import_module(name)
         for module in pkgutil.walk_packages(package.__path__, f"{name}."):
@@ -83,7 +83,7 @@ def import_all() -> None:
 
 
 def outcome(mutant: Mutant, groups: list[dict[str, float]]) -> tuple[str, str]:
-    """What groups of tests (name -> usual seconds), one after the other, say, and which of them."""
+    """The result of groups of tests (usual seconds by name) in order, and which test gave it."""
     def work() -> str:
         _limit(IMPORT)
         sys.meta_path.insert(0, Changed(mutant))
@@ -106,13 +106,13 @@ def outcome(mutant: Mutant, groups: list[dict[str, float]]) -> tuple[str, str]:
 
 
 def run_pytest(words: Iterable[str], plugin: object) -> int:
-    """Its exit code."""
+    """Returns pytest's exit code."""
     return int(pytest.main(["-q", "--rootdir", str(ROOT), "-p", "no:faulthandler", *words],
                            plugins=[plugin]))
 
 
 def forked(work: Callable[[], str]) -> tuple[int, str]:
-    """Exit code, and what it says; negative: the signal that ended it."""
+    """Exit code (negative: the signal that ended it) and output of work in a forked process."""
     with tempfile.TemporaryFile() as answer:
         sys.stdout.flush()
         child = os.fork()
@@ -128,7 +128,7 @@ def forked(work: Callable[[], str]) -> tuple[int, str]:
             os.killpg(child, signal.SIGKILL)
             raise
         try:
-            os.killpg(child, signal.SIGKILL)  # what the tests left
+            os.killpg(child, signal.SIGKILL)  # processes left by the tests
         except ProcessLookupError:
             pass
         answer.seek(0)
@@ -153,7 +153,7 @@ def _in_child(work: Callable[[], str], answer: int) -> None:
 
 
 def _limit(seconds: float) -> None:
-    """Of processor time, all that this process has taken among it."""
+    """Limit CPU time, including what this process has already used."""
     hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
     resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 1, hard))
 
@@ -163,7 +163,7 @@ def _files(tests: Iterable[str]) -> list[str]:
 
 
 def _compile_changed(mutant: Mutant) -> None:
-    """Numba takes nothing kept that the change is in, and keeps nothing."""
+    """Have Numba neither use cached code that contains the change nor cache any."""
     from numba.core import caching
 
     from nav_algorithms import compiled

@@ -1,4 +1,4 @@
-"""What people do beside a course: look at its page, spawn and delete, give goals, record a bag."""
+"""User activity during a course: page views, spawning and deleting, goals, a rosbag."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src/sim/sim_viewer
 from page_link import PageLink
 
 VISITORS = 5
-SPAWN_PERIOD = 10.0  # s, wall, that a model stands or is away
+SPAWN_PERIOD = 10.0  # s, wall, for which a model is present or absent
 BAG = ["rosbag", "record", "--all", "--split", "--duration=60", "--max-splits=3",
        "--exclude=.*(image|points).*"]
-MODEL, PLACE = "visitor", (50.0, 50.0)  # m, where nothing else is
-GOALS, GOAL_PERIODS = ((1.5, -1.5), (-1.4, 1.4)), 6  # m in map; in turn, each after so many spawns
+MODEL, PLACE = "visitor", (50.0, 50.0)  # m, an empty place
+GOALS, GOAL_PERIODS = ((1.5, -1.5), (-1.4, 1.4)), 6  # m in map, in turn, every so many spawns
 BOX = """<robot name="visitor"><link name="box">
   <inertial>
     <mass value="1"/>
@@ -32,7 +32,7 @@ BOX = """<robot name="visitor"><link name="box">
 
 
 class Beside:
-    """Begins at once; `act` is to be called again and again."""
+    """Starts immediately; call `act` repeatedly."""
 
     def __init__(self, launched: Launched, folder: Path):
         launched.start("bag", [*BAG, "-o", str(folder / "rolling")])
@@ -50,7 +50,7 @@ class Beside:
         self._count, self._due = 0, time.monotonic()
 
     def act(self) -> None:
-        """Throw away what the visitors were sent; spawn, delete, give a goal where it is due."""
+        """Discard what the visitors received; spawn, delete and send a goal when due."""
         time.sleep(0.2)
         for each in self._visitors:
             each.events.clear()
@@ -70,6 +70,6 @@ class Beside:
         self._count += 1
 
     def end(self) -> None:
-        """The visitors go."""
+        """Disconnect the visitors."""
         for each in self._visitors:
             each.close()

@@ -1,4 +1,4 @@
-"""Whether what was sampled is flat after the warm-up: a table, and a picture."""
+"""Checks that the sampled figures are flat after the warm-up; makes a table and a picture."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from evaluation.trial.report import grouped, table
 from run_session.failure import RunError
 
 WARM_UP = 600.0  # s, wall; of shorter runs a third
-SHARE = 5  # the first and the last of so many parts of what follows are held against each other
+SHARE = 5  # the first and the last fifth after the warm-up are compared
 MOST_GROWTH = 0.02
 LEAST = {"memory": 2.0, "descriptors": 2.0, "threads": 2.0}  # MiB, count: less is no growth
-MOST_DRIFT = 0.02  # of pace and rate
-LEAST_DRIVEN = 1.0  # m, in the last part; a robot that stands loads nothing
+MOST_DRIFT = 0.02  # relative, of pace and rate
+LEAST_DRIVEN = 1.0  # m, in the last part; a robot that stands causes no load
 CLOCK_FIGURES = {"pace": statistics.median, "rate": statistics.median, "driven": sum}
 
 
 def judge(samples: Sequence[Sample]) -> tuple[str, bool]:
     """The table, and whether anything grows, the robot stands, or simulated time changes pace.
 
-    RunError where there are too few samples for an opinion.
+    RunError if there are too few samples.
     """
     if _ends([(each.time, each.pace) for each in samples if each.name == CLOCK]) is None:
         raise RunError("too few samples to say whether anything grows: let it run on")
@@ -44,7 +44,7 @@ def judge(samples: Sequence[Sample]) -> tuple[str, bool]:
 
 
 def _verdict(kind: str, first: float, last: float, change: float) -> str:
-    """What is wrong with a figure; nothing of one that is as it should be."""
+    """The fault in a figure; "" if there is none."""
     if kind == "driven":
         return "STANDS" if last < LEAST_DRIVEN else ""
     if kind in CLOCK_FIGURES:

@@ -1,4 +1,4 @@
-"""What each process holds, and how simulated time goes, at one moment."""
+"""Samples of each process's resources and of simulated time."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ from run_session.simulator import call
 PERIOD = 10.0  # s, wall, between two samples
 FEWEST = 30  # samples of a short run
 CLOCK = "clock"  # the row of simulated time
-ALL = "all"  # the row of all processes together: what leaves ever more of them behind
+ALL = "all"  # the row of all processes together: grows if ever more are left behind
 MEBIBYTE = 2**20
 
 
 class Sample(NamedTuple):
-    """Of one process, by its ROS name; of ALL; or of CLOCK, with 0 for what it does not have."""
+    """A sample of one process, by its ROS name; of ALL; or of CLOCK; 0 where not applicable."""
 
     time: float  # s, wall, since the first
     name: str
     memory: float  # MiB in RAM
     descriptors: int
     threads: int
-    pace: float  # simulated seconds a second since the last sample; 0 for a process
-    rate: float  # messages of /clock a simulated second
+    pace: float  # simulated seconds per second since the last sample; 0 for a process
+    rate: float  # messages of /clock per simulated second
     driven: float  # m, in a straight line, since the last sample
 
 
 class Sampler:
-    """Looks at all processes below this one, and at where the robot is."""
+    """Samples all descendants of this process, and the robot's position."""
 
     def __init__(self, robot: str) -> None:
         self._robot, self._place = robot, _place(robot)
@@ -47,7 +47,7 @@ class Sampler:
         self._simulated = rospy.get_time()
 
     def look(self) -> list[Sample]:
-        """A row for the clock, one for ALL, one for each process, those of one name added up."""
+        """A row for the clock, one for ALL, and one for each process name, added up."""
         now, simulated = time.monotonic(), rospy.get_time()
         elapsed, passed = now - self._looked, simulated - self._simulated
         place = _place(self._robot)
@@ -72,6 +72,6 @@ class Sampler:
 
 
 def _place(robot: str) -> tuple[float, float]:
-    """x and y, m. RunError where there is no such model."""
+    """x and y, m. RunError if there is no such model."""
     position = call(names.POSE, GetModelState, robot, "").pose.position
     return position.x, position.y

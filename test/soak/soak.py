@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Lets a course run for hours, with what people do beside it, and looks for what grows.
+"""Runs a course for hours, with user activity, and checks that nothing grows.
 
     soak.py [--hours H] [--course NAME]
 
-Beside it: the page with five visitors, a model that is spawned and deleted, a bag that rolls.
+Meanwhile: the page with five visitors, a model that is spawned and deleted, a rolling bag.
 Writes out/soak/NAME: samples.csv, growth.png and log/. Exit code 0: all is flat after the warm-up;
 1: something grows, or the robot stands; 2: could not run.
 """
@@ -32,7 +32,7 @@ from run_session.simulator import models
 ROOT = Path(__file__).resolve().parents[2]
 START_LIMIT = 300.0  # s, wall
 SIZE = ["camera_width:=320", "camera_height:=240"]
-COURSES = {  # the robot, and the words of each roslaunch
+COURSES = {  # the robot, and the arguments of each roslaunch
     "course": ("turtlebot3_waffle", [["learning_topic", "course_follow.launch", *SIZE,
                                       "follower:=07follower_ground.py"]]),
     "race": ("racecar", [["racecar_description", "race.launch", *SIZE]]),
@@ -58,7 +58,7 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 def _run(session: Session, options: argparse.Namespace) -> list[Sample]:
-    """One sample a process every PERIOD s, or FEWEST; an interruption keeps what there is."""
+    """Samples every PERIOD s, at least FEWEST; after an interruption, those so far."""
     robot, launches = COURSES[options.course]
     launched = session.launched(robot)
     launched.start_roscore()
@@ -81,7 +81,7 @@ def _run(session: Session, options: argparse.Namespace) -> list[Sample]:
 
 
 def _wait(launched: Launched, beside: Beside, seconds: float) -> None:
-    """Meanwhile the visitors' pictures are thrown away, and a program that dies is noticed."""
+    """Wait, discarding the visitors' data; RunError if a program dies."""
     until = time.monotonic() + seconds
     while time.monotonic() < until:
         launched.check(rospy.get_time())

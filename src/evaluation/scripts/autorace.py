@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives AutoRace 2020 by the lessons, with many seeds, and scores each mission (--help)."""
+"""Drives AutoRace 2020 with the lessons' nodes and many seeds, scoring each mission (--help)."""
 
 from evaluation.start import start
 

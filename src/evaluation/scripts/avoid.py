@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives by laser through halls with columns (--help)."""
+"""Drives through halls with columns, guided by the laser (--help)."""
 
 from evaluation.start import start
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares all methods that find the lane on the same seeds (--help)."""
+"""Compares all lane detection methods on the same seeds (--help)."""
 
 from evaluation.start import start
 

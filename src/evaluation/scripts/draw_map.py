@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`rosrun trial_worlds draw_map.py` by its former name."""
+"""`rosrun trial_worlds draw_map.py` under its former name."""
 
 import os
 import sys

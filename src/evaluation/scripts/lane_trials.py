@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives many laps in differing light and past people who cross (--help)."""
+"""Drives many laps in varied light and past people who cross the road (--help)."""
 
 from evaluation.start import start
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Has amcl find, find again and keep track of the waffle in the house (--help)."""
+"""Tests how amcl localises, relocalises and tracks the waffle in the house (--help)."""
 
 from evaluation.start import start
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`rosrun learning_topic make_course.py` by its former name."""
+"""`rosrun learning_topic make_course.py` under its former name."""
 
 import os
 import sys

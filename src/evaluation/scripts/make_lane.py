@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`rosrun lane_keeping make_lane.py` by its former name."""
+"""`rosrun lane_keeping make_lane.py` under its former name."""
 
 import os
 import sys

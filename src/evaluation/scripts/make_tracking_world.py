@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`rosrun ai_robot_tracking make_tracking_world.py` by its former name."""
+"""`rosrun ai_robot_tracking make_tracking_world.py` under its former name."""
 
 import os
 import sys

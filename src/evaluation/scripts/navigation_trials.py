@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives the waffle through many narrow yards, and past persons who cross its way (--help)."""
+"""Drives the waffle through many narrow yards, and past people who cross its path (--help)."""
 
 from evaluation.start import start
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes down where car and people truly are: `record_lane.py _out:=FILE`; ends with the drive."""
+"""Records the true poses of car and people: `record_lane.py _out:=FILE`; ends with the drive."""
 
 import math
 from pathlib import Path

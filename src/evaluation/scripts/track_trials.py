@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Follows the red cylinder in many seeded drives, and counts (--help)."""
+"""Follows the red cylinder in many seeded drives, and counts successes (--help)."""
 
 from evaluation.start import start
 

@@ -1,4 +1,4 @@
-"""Tells catkin where the Python package is."""
+"""Installs the package through catkin."""
 
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup

@@ -3,7 +3,7 @@
 
   draw_map.py WORLD NAME --height 0.18 --inside -2.0 -0.5
 
-The map's frame is the world's. Same world, same bytes.
+The map's frame is the world's. The same world gives the same bytes.
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""The course, how a drive round it is scored, and the run that does both."""
+"""Courses, and the trials that drive on them and score the drives."""

@@ -1,4 +1,4 @@
-"""Scores a drive along a track: laps, distance, lateral error, leaving it, stalling."""
+"""Scores a drive along a track: laps, distance, lateral error; detects leaving and stalling."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ import numpy as np
 from racecar_description.track.closed_line import Track
 
 STALL_TIME, STALL_DISTANCE = 5.0, 0.02  # s and m: less progress than this in that time is a stall
-START_TIME = 30.0  # s that a follower may take until the car moves for the first time
-MOVED = 0.005  # m from where it stood: now it drives
-REVERSED = 0.3  # m driven against the course's direction
-LAP_SHARE = 0.8  # of the line must be driven before its start counts as the end of a lap
+START_TIME = 30.0  # s that a follower may take until the car first moves
+MOVED = 0.005  # m from its start beyond which the car counts as moving
+REVERSED = 0.3  # m driven against the course's direction: ends the drive
+LAP_SHARE = 0.8  # share of the line to drive before crossing its start completes a lap
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Where the car is: simulated s, and base_footprint in the world, m and rad."""
+    """The car's true pose: simulated time, s, and base_footprint in the world, m and rad."""
 
     time: float
     x: float
@@ -28,7 +28,7 @@ class Sample:
 
 
 class Verdict(Enum):
-    """How a drive stands; all but DRIVING end it."""
+    """State of a drive; all but DRIVING end it."""
 
     DRIVING = "driving"
     CLOSED = "closed"
@@ -40,7 +40,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Lap:
-    """One closed lap: s, m, and m beside the line."""
+    """One completed lap: s, m, and lateral errors in m."""
 
     time: float
     distance: float
@@ -50,7 +50,7 @@ class Lap:
 
 @dataclass
 class _Tally:
-    """What adds up over a lap, or over the whole drive."""
+    """Sums over a lap, or over the whole drive."""
 
     distance: float = 0.0
     squares: float = 0.0  # m² s
@@ -70,23 +70,23 @@ class _Tally:
 
 @dataclass
 class LapScorer:
-    """Takes samples in the order of time; the verdict stays once it is not DRIVING."""
+    """Takes samples in order of time; the verdict is final once it is not DRIVING."""
 
     track: Track
     wanted_laps: int = 1
     off_course: float = 0.25  # m beside the line: farther than this and the car has left the course
     longest: float = math.inf  # s, simulated, of the whole drive
     verdict: Verdict = Verdict.DRIVING
-    why: str = ""  # one line on a verdict that is not CLOSED
+    why: str = ""  # one line that explains a verdict other than CLOSED
     laps: list[Lap] = field(default_factory=list)
     samples: list[Sample] = field(default_factory=list)
     lap_numbers: list[int] = field(default_factory=list)  # of each sample, from 0
-    lateral: float = 0.0  # m, now; positive to the left of the line
+    lateral: float = 0.0  # m, of the latest sample; positive to the left of the line
     total: _Tally = field(default_factory=_Tally)
     _lap: _Tally = field(default_factory=_Tally)
     _lap_start: float = 0.0  # s
     _lap_from: float = 0.0  # m, position at which this lap began
-    _position: float = 0.0  # m along the line, counted on from lap to lap
+    _position: float = 0.0  # m along the line, accumulated over laps
     _first_position: float = 0.0
     _farthest: float = 0.0
     _mark: tuple[float, float] = (0.0, 0.0)  # time and position of the last progress
@@ -94,22 +94,22 @@ class LapScorer:
 
     @property
     def over(self) -> bool:
-        """Whether more samples do not count."""
+        """Whether the drive has ended: further samples do not count."""
         return self.verdict is not Verdict.DRIVING
 
     @property
     def driven_share(self) -> float:
-        """Share of the present lap, 0 to 1."""
+        """Driven share of the current lap, 0 to 1."""
         return min(max((self._position - self._lap_from) / self.track.length, 0.0), 1.0)
 
     @property
     def present_lap(self) -> int:
-        """From 1."""
+        """Number of the current lap, from 1."""
         return min(len(self.laps) + 1, self.wanted_laps)
 
     @property
     def progress(self) -> float:
-        """m along the line since the first sample; less than 0 backwards."""
+        """m along the line since the first sample; negative backwards."""
         return self._position - self._first_position
 
     def add(self, sample: Sample) -> Verdict:
@@ -150,7 +150,7 @@ class LapScorer:
         self._judge(sample)
 
     def _cross_start(self, before: float, before_time: float, now: float) -> None:
-        """Close a lap, or begin the first one, where the start of the line was passed."""
+        """Complete a lap, or begin the first one, if the start of the line was crossed."""
         length = self.track.length
         line = math.floor(self._position / length) * length
         if not before < line <= self._position:
@@ -189,6 +189,6 @@ class LapScorer:
 
 
 def fingerprint(drive: LapScorer) -> str:
-    """SHA-256 over times and poses of all samples: two drives with one are equal to the bit."""
+    """SHA-256 over times and poses of all samples, to compare drives bit for bit."""
     rows = [(sample.time, sample.x, sample.y, sample.yaw) for sample in drive.samples]
     return hashlib.sha256(np.array(rows, "<f8").tobytes()).hexdigest()

@@ -1,4 +1,4 @@
-"""Pictures by matplotlib, which is loaded when one is drawn: no drive waits for it."""
+"""Pictures by matplotlib, which is loaded only when one is drawn, so that no drive waits for it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PANEL_DPI, PANEL = 110, (6.5, 3.4)  # of charts: px an inch; inches
 
 def map_sheet(title: str, subtitle: str, low: Sequence[float], high: Sequence[float],
               more: float = 0.0) -> tuple[Figure, Axes]:
-    """A figure, 1400 px wide, with a map of what lies between two corners (x, y), m.
+    """A figure, 1400 px wide, with a map of the area between two corners (x, y), m.
 
     `more` inches stay free below the map.
     """
@@ -49,7 +49,7 @@ def map_sheet(title: str, subtitle: str, low: Sequence[float], high: Sequence[fl
 
 
 def below(figure: Figure, more: float) -> Axes:
-    """A place for a curve in the `more` inches below a map."""
+    """Axes for a curve in the `more` inches below a map."""
     height = figure.get_figheight()
     axes = figure.add_axes(
         (SIDE / WIDTH, 0.6 / height, 1 - 2 * SIDE / WIDTH, (more - 0.7) / height))
@@ -58,17 +58,17 @@ def below(figure: Figure, more: float) -> Axes:
 
 
 def legend(axes: Axes) -> None:
-    """Where it covers least."""
+    """Add a legend where it covers least."""
     axes.legend(facecolor=PAPER, edgecolor=colours.GRID, labelcolor=TEXT, fontsize=9)
 
 
 def draw_arrow(axes: Axes, pose: Sequence[float], length: float, colour: str) -> None:
-    """An arrow head at x, y, yaw; m, rad."""
+    """Draw an arrow head of this length (m) at x, y, yaw; m, rad."""
     axes.fill(*arrow(pose, length).T, facecolor=colour, edgecolor="white", zorder=5)
 
 
 def pixels(figure: Figure) -> np.ndarray:
-    """The picture (rows, columns, 3), BGR."""
+    """The figure as a picture (rows, columns, 3), BGR."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     canvas = FigureCanvasAgg(figure)
@@ -77,7 +77,7 @@ def pixels(figure: Figure) -> np.ndarray:
 
 
 def write_png(path: Path, picture: np.ndarray) -> None:
-    """As a PNG of (rows, columns, 3), BGR; OSError, and no file, where it cannot be written."""
+    """Write (rows, columns, 3), BGR, as PNG; OSError, and no file, if it cannot be written."""
     write_whole(path, cv2.imencode(".png", picture)[1].tobytes())
 
 
@@ -100,7 +100,7 @@ def path_picture(track_file: TrackFile, drive: LapScorer, title: str, subtitle: 
 
 
 def _draw_laps(axes: Axes, drive: LapScorer) -> None:
-    """Laps lie on one another: earlier ones are wider, so that they show beside later ones."""
+    """Draw all laps; they overlap, so earlier ones are wider, to remain visible."""
     if not drive.samples:
         return
     points = np.array([(sample.x, sample.y) for sample in drive.samples])
@@ -126,9 +126,9 @@ def _lap_figures(drive: LapScorer, number: int) -> str:
 
 def write_tiles(path: Path, tiles: Sequence[Any], draw: Callable[[Axes, Any], tuple[str, bool]],
                 size: tuple[float, float], columns: int = 5) -> None:
-    """A picture with a small one for each of the tiles, `size` in inches (width, height).
+    """Write a picture of one small plot for each tile, `size` in inches (width, height).
 
-    `draw` fills one and returns its caption, and whether that is good news.
+    `draw` draws one and returns its caption, and whether it was a success.
     """
     from matplotlib.figure import Figure
 
@@ -145,7 +145,7 @@ def write_tiles(path: Path, tiles: Sequence[Any], draw: Callable[[Axes, Any], tu
 
 @contextlib.contextmanager
 def chart(path: Path, rows: int, columns: int, **settings: object) -> Iterator[np.ndarray]:
-    """Axes (rows, columns) of a chart that is written when they were drawn on."""
+    """A context that yields the Axes (rows, columns) of a chart and writes it at the end."""
     from matplotlib.figure import Figure
 
     sheet = Figure(figsize=(PANEL[0] * columns, PANEL[1] * rows), dpi=PANEL_DPI)

@@ -1,4 +1,4 @@
-"""Films' pictures from above, in pixels: a piece of the world, and what is and drives on it."""
+"""Top views for videos, in pixels: a part of the world, with objects and robots on it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ HEAD = np.array([(0.6, 0.0), (-0.4, 0.375), (-0.2, 0.0), (-0.4, -0.375)])  # of 
 
 
 class Plan:
-    """What lies between two corners (x, y), m, drawn to fit a width; y points up."""
+    """A view of the area between two corners (x, y), m, scaled to a width; y points up."""
 
     def __init__(self, low: Sequence[float], high: Sequence[float], width_px: int):
         self._low, self._high = np.asarray(low, float), np.asarray(high, float)
@@ -27,7 +27,7 @@ class Plan:
         self.image = np.full((height_px, width_px, 3), bgr(FLOOR), np.uint8)
 
     def copy(self) -> Plan:
-        """Another that begins as this one is now."""
+        """A copy that can be drawn on further."""
         other = Plan(self._low, self._high, self.image.shape[1])
         other.image = self.image.copy()
         return other
@@ -38,7 +38,7 @@ class Plan:
         return (points - (self._low[0], self._high[1])) * (self.px_per_m, -self.px_per_m)
 
     def grid(self, step: float) -> None:
-        """Lines that are so many metres apart."""
+        """Draw grid lines `step` metres apart."""
         for axis in (0, 1):
             first, last = math.ceil(self._low[axis] / step), math.floor(self._high[axis] / step)
             for number in range(first, last + 1):
@@ -48,31 +48,31 @@ class Plan:
 
     def line(self, points: Iterable[Sequence[float]], colour: str, thick_px: int = 1,
              closed: bool = False) -> None:
-        """Through points of the world, anti-aliased."""
+        """Draw a line through points (n, 2) of the world, m, anti-aliased."""
         pixels = _fixed(self.to_px(points))
         if len(pixels) > 1:
             cv2.polylines(self.image, [pixels], closed, bgr(colour), thick_px, cv2.LINE_AA, SHIFT)
 
     def disc(self, place: Sequence[float], radius: float, colour: str) -> None:
-        """Radius in m."""
+        """Draw a disc; place and radius in m."""
         centre = _fixed(self.to_px([place]))[0].tolist()
         cv2.circle(self.image, centre, round(radius * self.px_per_m * (1 << SHIFT)), bgr(colour),
                    -1, cv2.LINE_AA, SHIFT)
 
     def dots(self, points: np.ndarray, colour: str) -> None:
-        """3 px wide."""
+        """Draw dots, 3 px wide, at points (n, 2), m."""
         for x, y in np.round(self.to_px(points)).astype(int).tolist():
             cv2.rectangle(self.image, (x - 1, y - 1), (x + 1, y + 1), bgr(colour), -1)
 
     def arrow(self, pose: Sequence[float], length: float, colour: str) -> None:
-        """An arrow head (length in m) with its reference point at x, y, yaw."""
+        """Draw an arrow head (length in m) with its reference point at x, y, yaw."""
         corners = _fixed(self.to_px(arrow(pose, length)))
         cv2.fillPoly(self.image, [corners], bgr(colour), cv2.LINE_AA, SHIFT)
         cv2.polylines(self.image, [corners], True, (255, 255, 255), 1, cv2.LINE_AA, SHIFT)
 
 
 def course_plan(track_file: TrackFile, width_px: int, margin: float = 0.15) -> Plan:
-    """The floor with its grid of half metres, the two lines and the start."""
+    """A view of the floor with a 0.5 m grid, the two lines and the start."""
     yellow = build_track(track_file)
     white = yellow.offset(-track_file.lane_width)
     points = np.array(yellow.points() + white.points())
@@ -101,7 +101,7 @@ def arrow(pose: Sequence[float], length: float) -> np.ndarray:
 
 def write_text(image: np.ndarray, text: str, at_px: tuple[int, int], height_px: int,
                colour: tuple = bgr(TEXT)) -> int:
-    """Text with its base line's left end at a pixel; returns its width in px."""
+    """Draw text with its baseline's left end at a pixel; returns its width in px."""
     thick = 2 if height_px > 24 else 1
     scale = cv2.getFontScaleFromHeight(FONT, height_px, thick)
     cv2.putText(image, text, at_px, FONT, scale, colour, thick, cv2.LINE_AA)

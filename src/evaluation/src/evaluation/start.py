@@ -1,4 +1,4 @@
-"""Starts a program of this package; Ctrl-C while its modules load just ends it."""
+"""Starts a program of this package; Ctrl-C while its modules load ends it quietly."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import NoReturn
 
 
 def start(module: str, program: str) -> NoReturn:
-    """Run the Trial or LiveDrive of that name in evaluation.MODULE with the command line."""
+    """Run class `program`, a Trial or LiveDrive in evaluation.MODULE, with the command line."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     runner = importlib.import_module("evaluation.trial.runner")
     live = importlib.import_module("evaluation.trial.live")

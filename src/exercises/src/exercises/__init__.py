@@ -1,1 +1,1 @@
-"""Checks a learner's file by what it does."""
+"""Checks a learner's file by running it."""

@@ -1,4 +1,4 @@
-"""Which exercises there are: the file exercises.yaml of each package that rospack finds."""
+"""Finds the exercises: the file exercises.yaml of each package that rospack finds."""
 
 from __future__ import annotations
 
@@ -46,16 +46,16 @@ class Exercise:
     file: Path  # the exercises.yaml
     name: str
     title: str
-    start: Path  # where the learner edits
+    start: Path  # the file that the learner edits
     solution: Path
     check: str
     limits: dict[str, float]
 
 
 def find_exercises(packages: dict[str, Path] | None = None) -> dict[str, Exercise]:
-    """Name -> exercise, of these packages (name -> folder) or of all that rospack finds.
+    """Exercises by name, of these packages (folders by name) or of all that rospack finds.
 
-    CannotCheck where a file is wrong or two packages use one name.
+    CannotCheck if a file is invalid or two packages use the same name.
     """
     found: dict[str, Exercise] = {}
     for _, folder in sorted((packages or _all_packages()).items()):
@@ -69,10 +69,10 @@ def find_exercises(packages: dict[str, Path] | None = None) -> dict[str, Exercis
 
 
 def read_exercises(file: Path) -> dict[str, Exercise]:
-    """Name -> exercise of one file; CannotCheck names file and key of what is wrong."""
+    """Exercises of one file, by name; CannotCheck names file and key of an error."""
     try:
         table = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise CannotCheck(f"{file}: {' '.join(str(error).split())[:200]}") from error
     if not isinstance(table, dict):
         raise CannotCheck(f"{file}: must be a table of exercises, NAME: {{{', '.join(KEYS)}}}")

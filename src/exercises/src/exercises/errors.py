@@ -1,4 +1,4 @@
-"""What keeps a check from saying yes."""
+"""Exceptions that end a check early."""
 
 
 class CannotCheck(Exception):
@@ -6,8 +6,8 @@ class CannotCheck(Exception):
 
 
 class TimeUp(BaseException):
-    """The check takes too long; no `except Exception` of the learner's catches it."""
+    """The check takes too long; a learner's `except Exception` does not catch it."""
 
 
 class Mistake(Exception):
-    """The learner's program does what no check can go on with; one line."""
+    """An error in the learner's program that the check cannot continue after; one line."""

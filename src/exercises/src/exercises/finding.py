@@ -1,4 +1,4 @@
-"""What a check has seen, and what it wanted."""
+"""What a check observed, and what it expected."""
 
 from __future__ import annotations
 
@@ -36,5 +36,5 @@ def near(what: str, value: float, wanted: float, tolerance: float, unit: str = "
 
 
 def holds(what: str, seen: str, wanted: str, passed: bool) -> Finding:
-    """Anything else, in words."""
+    """Any other finding, in words."""
     return Finding(what, seen, wanted, bool(passed))

@@ -24,7 +24,7 @@ EPILOG = "Exit code 0: passed; 1: failed; 2: could not be checked; 130: interrup
 
 
 def run() -> int:
-    """`main` in a terminal, where Ctrl-C and the time limit end what does not end by itself."""
+    """`main` for a terminal: Ctrl-C and the time limit end a check that hangs."""
     signal.signal(signal.SIGALRM, _give_up)
     signal.alarm(LIMIT)
     try:
@@ -56,7 +56,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def list_all(known: dict[str, Exercise]) -> int:
-    """Name, title and file of each, one line each."""
+    """Print name, title and file of each exercise; returns the exit code."""
     width = max(map(len, known), default=0)
     for name, exercise in known.items():
         print(f"{name:{width}}  {exercise.title}  ({shown(exercise.start)})")
@@ -65,14 +65,14 @@ def list_all(known: dict[str, Exercise]) -> int:
 
 
 def chosen(known: dict[str, Exercise], name: str) -> Exercise:
-    """The exercise of that name; CannotCheck lists all."""
+    """The exercise of that name; if there is none, CannotCheck lists all."""
     if name not in known:
         raise CannotCheck(f"no exercise {name!r}; there are: {', '.join(known)}")
     return known[name]
 
 
 def check(exercise: Exercise, file: Path | None = None) -> int:
-    """Print a line for each finding; the exit code."""
+    """Print a line for each finding; returns the exit code."""
     file = file or exercise.start
     if not file.is_file():
         raise CannotCheck(f"{file}: no such file; leave FILE out to check {exercise.start}")
@@ -91,7 +91,7 @@ def check(exercise: Exercise, file: Path | None = None) -> int:
 
 
 def findings(exercise: Exercise, file: Path) -> Iterator[Finding]:
-    """What the exercise's check says of a file; Mistake where the learner's program fails."""
+    """The findings of the exercise's check on a file; Mistake if the learner's program fails."""
     module = importlib.import_module(f"exercises.checks.{exercise.check}")
     try:
         yield from module.look(file.resolve(), exercise.limits)
@@ -100,14 +100,14 @@ def findings(exercise: Exercise, file: Path) -> Iterator[Finding]:
     except (Exception, SystemExit) as error:
         if line_in(error, file.resolve()) is not None:
             raise Mistake(said(error, file.resolve())) from error
-        if isinstance(error, (AttributeError, TypeError)):  # what it calls is not as it was
+        if isinstance(error, (AttributeError, TypeError)):  # the learner changed what it calls
             raise Mistake(f"{file}: {error}: keep names, arguments and answers as in the starting"
                           " file") from error
         raise
 
 
 def shown(path: Path) -> str:
-    """The path as PACKAGE/REST where it lies in a package."""
+    """The path as PACKAGE/REST if it is in a package."""
     package = rospkg.get_package_name(str(path.resolve()))
     folder = Path(rospkg.RosPack().get_path(package)) if package else None
     if folder and path.resolve().is_relative_to(folder.resolve()):

@@ -1,4 +1,4 @@
-"""A learner's file as a node on a master of its own, beside this process as another node."""
+"""Runs a learner's file as a node on its own master; this process is another node."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from exercises.program import compiled
 from run_session.launch import Launched, describe_exit
 from run_session.processes import Child, Family
 
-START = 20.0  # s, wall: for whatever the node offers first
+START = 20.0  # s, wall: for the node's first topic or service
 PAUSE = 0.05  # s
 
 
 @contextlib.contextmanager
 def running(file: Path) -> Iterator[Callable[[Callable[[], object], float], bool]]:
-    """While it runs: a function that waits (at most s) for a condition and says whether it holds.
+    """While the node runs: a function that waits (at most s) for a condition; True if it holds.
 
-    CannotCheck if it is no Python, RunError if no roscore starts; that function raises Mistake when
+    CannotCheck if it is no Python, RunError if no roscore starts; the function raises Mistake if
     the node has ended.
     """
     compiled(file)

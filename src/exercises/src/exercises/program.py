@@ -1,4 +1,4 @@
-"""A learner's Python file as a module, and its mistakes as one line each."""
+"""Loads a learner's Python file as a module, and reports its errors as one line each."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from exercises.errors import CannotCheck, Mistake
 
 
 def compiled(file: Path) -> CodeType:
-    """The file's code; CannotCheck says in a line what of it is no Python."""
+    """The file's compiled code; CannotCheck reports a syntax error in one line."""
     try:
         return compile(file.read_bytes(), str(file), "exec")
     except OSError as error:
@@ -27,11 +27,11 @@ def compiled(file: Path) -> CodeType:
 
 
 def load(file: Path) -> ModuleType:
-    """The file, imported anew; CannotCheck says in a line what went wrong."""
+    """Import the file afresh; CannotCheck reports an error in one line."""
     code = compiled(file)
     module = ModuleType(f"exercise_{file.stem}", None)
     module.__file__ = str(file)
-    sys.modules[module.__name__] = module  # dataclasses look there
+    sys.modules[module.__name__] = module  # needed by dataclasses
     sys.path.insert(0, str(file.parent))
     try:
         exec(code, module.__dict__)
@@ -43,7 +43,7 @@ def load(file: Path) -> ModuleType:
 
 
 def part(module: ModuleType, call: str) -> Any:
-    """What the module calls so: "steer(offset_px)"; CannotCheck where there is none."""
+    """The module's function or class named in `call`, "steer(offset_px)"; CannotCheck if none."""
     found = getattr(module, call.partition("(")[0], None)
     if not callable(found):
         raise CannotCheck(f"{module.__file__}: has no `{call}`, which the check calls: keep it")
@@ -51,20 +51,20 @@ def part(module: ModuleType, call: str) -> Any:
 
 
 def line_in(error: BaseException, file: Path) -> int | None:
-    """The last line of the file that an exception came through; None where it met none."""
+    """Number of the file's last line in an exception's traceback; None if there is none."""
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__)
              if frame.filename == str(file)]
     return lines[-1] if lines else None
 
 
 def said(error: BaseException, file: Path) -> str:
-    """Where in the file an exception came from, and which."""
+    """The exception, and the file's line that it came from, in one line."""
     return f"{file}:{line_in(error, file) or 1}: {type(error).__name__}:" \
            f" {' '.join(str(error).split())}"
 
 
 def numbers(value: Any, count: int, call: str) -> tuple[float, ...]:
-    """So many finite numbers that a call answered; Mistake of anything else."""
+    """Check that a call returned `count` finite numbers; Mistake for anything else."""
     given = value if isinstance(value, Iterable) else [value]
     try:
         found = tuple(float(each) for each in given)
@@ -77,7 +77,7 @@ def numbers(value: Any, count: int, call: str) -> tuple[float, ...]:
 
 
 def mask_of(value: Any, shape: tuple[int, ...], call: str) -> np.ndarray:
-    """(rows, columns) bool of a mask that a call answered; Mistake of anything else."""
+    """The mask that a call returned, as bool (rows, columns); Mistake for anything else."""
     if not isinstance(value, np.ndarray) or value.shape != shape:
         seen = f"an array {value.shape}" if isinstance(value, np.ndarray) else repr(value)[:60]
         raise Mistake(f"{call} answered {seen}, wanted a mask {shape}")

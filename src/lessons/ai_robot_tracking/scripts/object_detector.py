@@ -27,12 +27,12 @@ TEXTS = ("model", "image", "config")
 KEYS = {*FIELDS, *TEXTS, "class_names", "window"}
 WINDOW = "YOLO Detection"
 COMPLAINT_TIME, SKIP_TIME, QUIET_TIME = 5.0, 5.0, 5.0  # s, wall
-TICK = 0.2  # s, wall: nothing waits for longer, or Ctrl-C would
-BUFFER = 2**24  # bytes: with rospy's own, pictures pile up and grow old
+TICK = 0.2  # s, wall: longest wait, so that Ctrl-C works soon
+BUFFER = 2**24  # bytes: with rospy's default, images queue up and get old
 
 
 class ObjectDetector:
-    """Takes the newest picture, asks the network, publishes what it found."""
+    """Takes the newest image, runs the network, publishes the detections."""
 
     def __init__(self, model, settings, topic, window):
         self.model, self.settings, self.window = model, settings, window
@@ -54,7 +54,7 @@ class ObjectDetector:
         self.info.publish(info)
 
     def run(self):
-        """Until the node is told to end; only the newest picture counts."""
+        """Runs until shutdown; only the newest image counts."""
         heard = told = due = time.monotonic()
         while not rospy.is_shutdown():
             message = self.next_picture(due)
@@ -62,7 +62,7 @@ class ObjectDetector:
             if message is not None:
                 heard = now
                 self.work(message)
-                if self.settings.max_rate > 0:  # wall time: it is the machine that is spared
+                if self.settings.max_rate > 0:  # in wall time, to limit the machine's load
                     due = now + 1 / self.settings.max_rate
             elif now - max(heard, due) > QUIET_TIME:
                 rospy.logwarn_throttle(COMPLAINT_TIME, f"no picture on {self.topic} for "
@@ -78,7 +78,7 @@ class ObjectDetector:
         return self.pictures.take(TICK) if rest <= TICK else None
 
     def work(self, message):
-        """One picture; what cannot be read is said and left out."""
+        """Process one image; log and skip one that cannot be read."""
         try:
             rgb = rgb_of(message)
         except PictureError as error:
@@ -99,7 +99,7 @@ class ObjectDetector:
                 cv2.waitKey(1)  # ms
 
     def tell_skipped(self, span):
-        """One line, if in these s pictures came faster than they could be looked at."""
+        """Log one line if images came faster, in these s, than they could be processed."""
         taken, skipped = self.pictures.counts()
         if skipped:
             rospy.loginfo(f"{skipped} of {taken + skipped} pictures skipped in {span:.0f} s: "
@@ -107,7 +107,7 @@ class ObjectDetector:
 
 
 def main():
-    """Exit code 1, with one line, if the model or a parameter is no good."""
+    """Exit code 1, with one line, if the model or a parameter is invalid."""
     rospy.init_node("object_detector")
     try:
         given = own_parameters()

@@ -14,7 +14,7 @@ from ai_robot_tracking.settings import number
 from geometry_msgs.msg import Twist
 
 RATE_HZ = 10
-PATIENCE = 1.0  # s, wall: a robot that is there has connected by then
+PATIENCE = 1.0  # s, wall, within which a running robot connects
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class SimpleController:
         message.linear.x, message.angular.z = speed, turn
         begun = rospy.get_time()
         while 0 <= rospy.get_time() - begun < duration and not rospy.is_shutdown():
-            self.publisher.publish(message)  # again and again: an old command is forgotten
+            self.publisher.publish(message)  # repeatedly: the robot drops old commands
             try:
                 rate.sleep()
             except rospy.ROSInterruptException:

@@ -4,7 +4,7 @@
 import signal
 import sys
 
-signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C while modules load, or later: just end
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends the program without a traceback
 
 from ai_robot_tracking.training.main import main  # noqa: E402
 

@@ -12,7 +12,7 @@ from ai_robot_tracking.tracker_node import TrackerNode
 
 
 class VisualTracker:
-    """Keeps what was seen last, to draw it."""
+    """Keeps the last detection, to draw it."""
 
     def __init__(self, settings):
         self.settings, self.blob = settings, None

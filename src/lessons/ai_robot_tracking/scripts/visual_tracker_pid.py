@@ -13,7 +13,7 @@ from ai_robot_tracking.tracker_node import TrackerNode
 
 
 class VisualTrackerPid:
-    """Gives the follower its pictures and says what it does."""
+    """Passes images to the follower and logs what it does."""
 
     def __init__(self, settings):
         self.follower = Follower(settings)

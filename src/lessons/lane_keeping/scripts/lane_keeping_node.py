@@ -35,12 +35,12 @@ WARNINGS = {
 
 
 class LaneKeeping:
-    """Hands pictures to the LaneKeeper, and sends, says and shows what it decides."""
+    """Passes images to the LaneKeeper; sends, logs and shows its decisions."""
 
     def __init__(self, settings, window):
         self.settings, self.bridge = settings, cv_bridge.CvBridge()
         self.keeper = lane_keeper.LaneKeeper(settings)
-        self.lock = threading.Lock()  # images and the timer come on threads of their own
+        self.lock = threading.Lock()  # images and the timer are on different threads
         self.arrival, self.state = rospy.get_time(), None
         self.window = window
         if window:
@@ -80,7 +80,7 @@ class LaneKeeping:
             cv2.waitKey(1)  # ms
 
     def say(self, state, warning):
-        """The state as a topic when it changes; a warning as often as REPEAT allows."""
+        """Publish the state when it changes; log a warning as often as REPEAT allows."""
         if state != self.state:
             self.state = state
             self.states.publish(state)
@@ -89,7 +89,7 @@ class LaneKeeping:
             rospy.logwarn_throttle_identical(REPEAT, warning)
 
     def distrust(self, state, warning):
-        """Stand still: there is nothing to drive by."""
+        """Stop: the image is unusable."""
         self.keeper.stand()
         self.send(0.0, 0.0)
         self.say(state, f"{{topic}}: {warning}")
@@ -98,7 +98,7 @@ class LaneKeeping:
         with self.lock:
             late = rospy.get_time() - self.arrival
             if late < 0:
-                self.arrival = rospy.get_time()  # time began anew
+                self.arrival = rospy.get_time()  # time was reset
             elif late > self.settings.image_timeout:
                 self.distrust("no image", "no picture, standing still  没有图像，停车")
 
@@ -118,7 +118,7 @@ class LaneKeeping:
 
 
 def read_parameters(given):
-    """Settings and whether there is a window, from the node's parameters; or SettingsError."""
+    """Settings, and whether to show a window, from the node's parameters; or SettingsError."""
     numbers = dict(given)
     path, window = numbers.pop("config", "") or CONFIG, numbers.pop("window", True)
     if not isinstance(path, str):

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Walks the people over the zebra crossings: a command to each of them with each picture.
+"""Walks people over the zebra crossings: sends each a command with every camera image.
 
-Where a crossing is and how it is used stands in config/crossings.yaml. People look before they
-step out, and do not step out close before a car that drives.
+config/crossings.yaml gives the crossings and how they are used. People look before they step
+out, and do not step out close in front of a moving car.
 按 config/crossings.yaml 让行人过斑马线；行人会先看车，车近时不上路
 """
 
@@ -22,7 +22,7 @@ from nav_msgs.msg import Odometry
 from rospy.client import load_command_line_node_params
 from sensor_msgs.msg import CameraInfo
 
-LATEST = 0.022  # s: places come at 50 Hz; an older one is not the last before a picture
+LATEST = 0.022  # s: odometry comes at 50 Hz; an older one is not the last before an image
 PATIENCE = 0.1  # s, wall, to wait for it
 MEASURES, PLACE = ("length", "half_width", "kerb", "far"), ("x", "y", "heading")
 PARAMETERS = ("crossings", "near", "seed")
@@ -30,7 +30,7 @@ MOST = 1e6  # of any number
 
 
 class Place:
-    """The last odometry of one model: where it is, and how fast; may be waited for."""
+    """The last odometry of one model, position and speed, with a wait for a given time."""
 
     def __init__(self, topic):
         self._news = threading.Condition()
@@ -38,7 +38,7 @@ class Place:
         rospy.Subscriber(topic, Odometry, self._take, queue_size=1, tcp_nodelay=True)
 
     def at(self, time):
-        """x, y, speed as they were at a simulated time (s), or the newest there is; or None."""
+        """x, y, speed at a simulated time (s), or the newest ones; or None."""
         with self._news:
             self._news.wait_for(lambda: self._time() > time - LATEST, PATIENCE)
             if self._message is None:
@@ -56,11 +56,11 @@ class Place:
 
 
 class Pedestrians:
-    """All who walk."""
+    """All pedestrians."""
 
     def __init__(self, crossings, habits, seed):
         self._car, self._people = Place("ground_truth"), []
-        # First of all: whoever waits for our publishers before time begins, waits for this too.
+        # First: whoever waits for our publishers before time begins thus also waits for this.
         rospy.Subscriber("camera_info", CameraInfo, self._walk, queue_size=1, tcp_nodelay=True)
         for number, crossing in enumerate(crossings, start=1):
             walker = Walker(crossing, habits, np.random.default_rng([seed, number]))
@@ -85,7 +85,7 @@ def read_crossings(path):
         length, _, kerb, far = numbers(values, MEASURES, "")
         return [Crossing(*numbers(zebra, PLACE, f"zebra {count}: "), length, kerb, far)
                 for count, zebra in enumerate(zebras, start=1)]
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise SystemExit(f"pedestrians: {path}: {' '.join(str(error).split())}") from error
 
 

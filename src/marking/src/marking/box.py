@@ -1,4 +1,4 @@
-"""One submission's program, running in its sandbox: ended where it uses too much."""
+"""Runs one submission's program in its sandbox, and kills it if it exceeds its limits."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ EXCEPTION = re.compile(r"[\w.]+(Error|Exception|Interrupt)\b")
 
 
 class Box:
-    """One submission's program, running; its output goes to a file, bounded."""
+    """One submission's running program; its output goes to a file, up to KEPT_OUTPUT."""
 
     def __init__(self, kind: Kind, folder: Path, program: Path, limits: Limits,
                  environment: Mapping[str, str], output: Path):
@@ -50,7 +50,7 @@ class Box:
             thread.start()
 
     def fault(self) -> str:
-        """Why it has ended, in one line; "": it runs."""
+        """Why it has ended, in one line; "" while it runs."""
         if self._process.poll() is None:
             return ""
         for thread in self._threads:
@@ -59,7 +59,7 @@ class Box:
             f"the program ended ({_describe(self._process.returncode)}){self._last_words()}")
 
     def end(self) -> None:
-        """Kill it with all that it started."""
+        """Kill the program and all its descendants."""
         self._kill()
         self._process.wait()
         for thread in self._threads:
@@ -71,7 +71,7 @@ class Box:
                 os.kill(pid, signal.SIGKILL)
 
     def _below(self) -> list[int]:
-        """What it started, and they."""
+        """Process ids of all its descendants."""
         try:
             children = psutil.Process(self._process.pid).children(recursive=True)
         except psutil.NoSuchProcess:
@@ -79,7 +79,7 @@ class Box:
         return [each.pid for each in children]
 
     def _guard(self) -> None:
-        """End it where it uses too much: what the kernel limits only for each process."""
+        """Kill it if its processes together exceed limits that the kernel sets only for each."""
         limits = self._limits
         while self._process.poll() is None and not self._excess:
             time.sleep(GUARD_PERIOD)
@@ -101,7 +101,7 @@ class Box:
                 self._printed += len(block)
 
     def _last_words(self) -> str:
-        """Its exception, if it ended by one: other lines may differ from run to run."""
+        """Its exception, if it ended by one; other output may differ from run to run."""
         text = self._output.read_text(encoding="utf-8", errors="replace")
         lines = [line for line in map(one_line, text.splitlines()) if EXCEPTION.match(line)]
         return f": {lines[-1][:LONGEST_REASON]}" if lines else ""

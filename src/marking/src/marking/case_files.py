@@ -1,4 +1,4 @@
-"""One case as a file: what the process that drives it has to know."""
+"""One case as a file, for the process that drives it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class CaseFile:
     """FOLDER/case.json, key by key."""
 
     rules: str  # path
-    kind: str  # of sandbox
+    kind: str  # sandbox kind
     course: str
     laps: int
     submission: str  # folder
@@ -31,17 +31,17 @@ class CaseFile:
     track: str  # path
     film: bool
     launch_args: list[str]  # for roslaunch, name:=value
-    timed: bool = False  # driven by time: the world hardly waits for an answer
+    timed: bool = False  # in real time: the world hardly waits for an answer
 
     def write(self, folder: Path) -> None:
-        """Into the case's folder."""
+        """Write it into the case's folder."""
         (folder / CASE).write_text(json.dumps(asdict(self), indent=1), encoding="utf-8")
 
     def by_time(self, limits: Limits) -> CaseFile:
-        """The same in real time, for a program that commands by a timer of its own.
+        """The same case in real time, for a program that sends commands by its own timer.
 
-        The world still waits a moment after each image, so that a timer that goes by simulated
-        time has its command there before time goes on.
+        The world still waits a moment after each image, so that a command from a timer in
+        simulated time arrives before time goes on.
         """
         changed = {"real_time_factor": "1", "lockstep_timeout": f"{limits.timed_answer_s:g}"}
         kept = [each for each in self.launch_args if each.partition(":=")[0] not in changed]
@@ -49,7 +49,7 @@ class CaseFile:
             *kept, *(f"{name}:={value}" for name, value in changed.items())])
 
     def driven(self) -> Course:
-        """The course that is driven."""
+        """The course to drive."""
         return driven(self.course)
 
     def robot(self) -> str:
@@ -57,11 +57,11 @@ class CaseFile:
         return self.driven().robot_name(tuple(self.launch_args))
 
     def scorer(self) -> LapScorer:
-        """One that has seen nothing yet."""
+        """A new scorer for this case."""
         track = build_track(load_track_file(Path(self.track)))
         return LapScorer(track, self.laps, off_course=self.driven().off_course)
 
 
 def read_case(folder: Path) -> CaseFile:
-    """What `write` wrote."""
+    """Read what `write` wrote."""
     return CaseFile(**json.loads((folder / CASE).read_text(encoding="utf-8")))

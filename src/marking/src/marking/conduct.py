@@ -1,7 +1,7 @@
-"""What a submission did that the rules do not allow, as simulator and ROS master saw it.
+"""What a submission did that the rules forbid, from the logs of simulator and ROS master.
 
-All other nodes are up, and call nothing more, before the submission starts: what is logged from
-then on is its doing, whatever name it gives itself.
+All other nodes are up before the submission starts, and call nothing more: whatever is logged from
+then on was done by the submission, whatever name its nodes have.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ REGISTRATION = re.compile(r": ([+-])(PUB|SUB|SERVICE|PARAM) \[(.*?)\] (?:by )?(\
 
 @dataclass(frozen=True)
 class Course:
-    """What was there before the submission started, and what it may use of it."""
+    """The ROS graph before the submission started, and the parts that it may use."""
 
     nodes: frozenset[str]
     topics: frozenset[str]  # published or subscribed
@@ -25,11 +25,11 @@ class Course:
     parameters: frozenset[str]
     may_publish: frozenset[str]
     may_call: frozenset[str]
-    own_calls: Counter[str]  # services that the judge itself calls, and how often
+    own_calls: Counter[str]  # number of calls by the judge itself, by service
 
 
 class Conduct:
-    """Reads the logs as they grow; what was found stays."""
+    """Reads the logs as they grow, and collects violations."""
 
     def __init__(self, course: Course):
         self._course = course
@@ -38,11 +38,11 @@ class Conduct:
 
     @property
     def violations(self) -> list[str]:
-        """One line each; in an order that does not depend on when they were seen."""
+        """One line each, sorted, so that the order does not depend on time."""
         return sorted(self._found)
 
     def see_state(self, entry: Mapping) -> None:
-        """A line of the state log; those with poses say nothing here."""
+        """Take a line of the state log; lines with poses are ignored here."""
         if entry.get("shutdown", "").startswith("external shutdown"):
             self._found.add("it ended the node /gazebo")
         if name := entry.get("call"):
@@ -52,12 +52,12 @@ class Conduct:
                 self._found.add(f"it called {name}")
 
     def see_end(self, what: str) -> None:
-        """A part of the course ended, and did not crash."""
+        """Take note that a node of the course was ended without crashing."""
         if not self._found:
             self._found.add(f"it ended a node of the course: {what}")
 
     def see_registrations(self, lines: Iterable[str]) -> None:
-        """New lines of the master's log."""
+        """Take new lines of the master's log."""
         for line in lines:
             if found := REGISTRATION.search(line):
                 self._found |= set(_of_registration(*found.groups(), self._course))

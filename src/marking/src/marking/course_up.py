@@ -1,4 +1,4 @@
-"""Brings a case's course up, and says what a submission has to do before time begins."""
+"""Starts a case's course, and says what a submission still has to do before time begins."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ STEADY_TIME = 2.0  # s, wall, without a change at the master: the course is comp
 
 
 class CourseUp:
-    """A course without a driver; time stands still."""
+    """A course without a driver, paused."""
 
     def __init__(self, launched: Launched, case: CaseFile, folder: Path, state_log: Path):
-        """RunError if it does not come up; the simulator writes the state log."""
+        """RunError if it does not come up; `state_log` is the file that the simulator writes."""
         self._launched, self._case, self._course = launched, case, case.driven()
-        self._watching = {ME}  # who sees the camera and is no driver
+        self._watching = {ME}  # nodes that subscribe to the camera but are no drivers
         self._own_nodes: frozenset[str] = frozenset()
-        self._registered: list | None = None  # at the master, since
+        self._registered: list | None = None  # the master's state, unchanged since
         self._since = 0.0  # s, wall
         launched.start_roscore()
         self._master = rosgraph.Master(ME, launched.master_uri)
@@ -47,7 +47,7 @@ class CourseUp:
         self.film = self._start_film(folder) if case.film else None
 
     def look_around(self, rules: Rules) -> tuple[conduct.Course, Tail]:
-        """What is there before the submission, and the master's log from here on."""
+        """The ROS graph before the submission starts, and the master's log from here on."""
         publishers, subscribers, services = self._master.getSystemState()
         registered = [*publishers, *subscribers, *services]
         master_log = Tail(self._launched.log_folder / "latest" / "master.log")
@@ -63,7 +63,7 @@ class CourseUp:
             frozenset(rules.may_call), Counter([names.UNPAUSE])), master_log
 
     def missing_link(self) -> str | None:
-        """What the submission has not done yet, before time may begin; None: nothing."""
+        """What the submission still has to do before time begins, in words; None: nothing."""
         try:
             found = self._connections()
         except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
@@ -78,12 +78,12 @@ class CourseUp:
         return f"made {missing.partition(' from ')[0]}" if missing else None
 
     def has_driver(self) -> bool:
-        """Whether the submission has a node at the master."""
+        """Whether the submission has a registered node."""
         registered = itertools.chain(*self._master.getSystemState())
         return any(node not in self._own_nodes for _, nodes in registered for node in nodes)
 
     def _is_ready(self) -> bool:
-        """The robot is there, and all that stands between it and a driver."""
+        """Whether the robot and all that a driver needs are there."""
         try:
             reply = rospy.ServiceProxy(names.WORLD, GetWorldProperties)()
             found, registered = self._connections(), self._master.getSystemState()

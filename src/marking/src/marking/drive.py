@@ -1,7 +1,7 @@
-"""One case in a process of its own: brings the course up, starts the submission, watches, reports.
+"""One case in its own process: starts the course and the submission, supervises, reports.
 
-Poses, contacts and calls come from the simulator's state log, a file that the sandbox does not
-show: no topic and no node's name is believed.
+Poses, contacts and calls come from the simulator's state log, a file that is not visible in the
+sandbox: no topic and no node name is trusted.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ from run_session.launch import Launched
 from run_session.session import Session
 from run_session.tail import Tail
 
-SETTLE_TIME = 1.0  # s, wall, for what is on its way when a submission is stopped
-ANSWER_TIME = 5.0  # s, wall, for an answer of the master's or a node's
+SETTLE_TIME = 1.0  # s, wall, for log entries still to come when a submission is stopped
+ANSWER_TIME = 5.0  # s, wall, for an answer from the master or a node
 FILM_TIME = WRITE_TIME + FINISH_TIME + 5.0  # s, wall: the encoder's own limits, and the node itself
 MOST_LOGGED = 30e6  # bytes of all nodes' logs in one case
 SIOCSIFFLAGS, IFF_UP = 0x8914, 1  # <linux/sockios.h>, <linux/if.h>
@@ -68,7 +68,7 @@ class MarkedDrive:
         try:
             self._drive(launched, course, box)
             if self._conduct.violations:
-                time.sleep(SETTLE_TIME)  # all of them, whichever was seen first
+                time.sleep(SETTLE_TIME)  # to report all of them, whichever was seen first
         finally:
             box.end()
         self._read_logs()
@@ -86,12 +86,12 @@ class MarkedDrive:
                 if not course.has_driver():
                     self._fault = f"after {self._limits.start_s:g} s it had not {missing}"
                     return
-                if not self._case.timed:  # it may wait for time to go on
+                if not self._case.timed:  # it may be waiting for time to go on
                     self._again = True
                     return
                 break
             time.sleep(LOOK_PERIOD)
-        # Beside the watching: a submission may have put a service of its own in that one's place.
+        # In a thread: a submission may have replaced this service by its own, which may hang.
         threading.Thread(target=rospy.ServiceProxy(names.UNPAUSE, Empty), daemon=True).start()
         began = time.monotonic()
         while self._scorer.verdict is Verdict.DRIVING and not self._is_over(launched, box):
@@ -106,7 +106,7 @@ class MarkedDrive:
             self._fault = f"it had not {missing}" if missing else ""
 
     def _is_over(self, launched: Launched, box: Box) -> bool:
-        """Whether the submission did what ends a case, or has ended itself."""
+        """Whether the case is over: a violation or fault, or the submission's own end."""
         self._read_logs()
         if self._conduct.violations or self._fault or self._again:
             return True
@@ -115,7 +115,7 @@ class MarkedDrive:
         except RunError as dead:
             self._read_logs()
             if not self._conduct.violations and "exit code 0" not in str(dead):
-                raise  # it crashed: nothing to mark by
+                raise  # the course crashed: the case cannot be marked
             self._conduct.see_end(str(dead).partition(" (")[0])
             return True
         if self._scorer.verdict is Verdict.DRIVING:
@@ -145,13 +145,13 @@ class MarkedDrive:
 
 
 def _bring_loopback_up() -> None:
-    """In a new network namespace it is down."""
+    """Bring up the loopback interface, which is down in a new network namespace."""
     with socket.socket() as any_socket:
         fcntl.ioctl(any_socket, SIOCSIFFLAGS, struct.pack("16sH14x", b"lo", IFF_UP))
 
 
 def _environment(master_uri: str) -> dict[str, str]:
-    """What ROS and Python need, and nothing of the teacher's."""
+    """The environment variables that ROS and Python need, and nothing else of the teacher's."""
     kept = ("PYTHONPATH", "PATH", "ROS_PACKAGE_PATH", "ROS_ROOT", "ROS_DISTRO", "ROS_VERSION",
             "ROS_ETC_DIR", "ROS_PYTHON_VERSION", "TURTLEBOT3_MODEL")
     return {"LANG": "C.UTF-8", "ROS_MASTER_URI": master_uri, "ROS_HOSTNAME": "localhost",

@@ -12,15 +12,15 @@ from evaluation.picture import path_picture, write_png
 from evaluation.trial.report import write_json
 from marking.case_files import PATH_PICTURE, REPORT, CaseFile
 
-BY_TIME = "by time"  # outcome: it does not answer each image, and has to drive in real time
+BY_TIME = "by time"  # outcome: it does not answer each image, so it has to drive in real time
 
 
 def write_report(folder: Path, case: CaseFile, drive: LapScorer, violations: Sequence[str],
                  fault: str, contacts: Mapping[str, int], again: bool = False) -> dict:
     """Write both into the folder; returns the report.
 
-    `contacts` counts, for each model that was touched, the lines of the state log that say so.
-    `again`: the case has to be driven by time.
+    `contacts`: for each touched model, the number of state log entries with the contact.
+    `again`: the case has to be driven again, in real time.
     """
     total, verdict = drive.total, drive.verdict
     why = drive.why

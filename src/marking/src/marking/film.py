@@ -1,4 +1,4 @@
-"""A node that films a case: what the camera saw, beside the way driven."""
+"""A node that records a video of a case: the camera image beside the path driven."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LOOK_PERIOD = 0.1  # s, wall
 
 
 def main(folder: Path) -> int:
-    """Film the case of this folder until the node is asked to end; returns the exit code."""
+    """Record the case of this folder until the node is shut down; returns the exit code."""
     case = read_case(folder)
     drive, robot, states = case.scorer(), case.robot(), Tail(folder / STATE_LOG)
     film = CourseFilm(folder / FILM, case.driven(), load_track_file(Path(case.track)), drive,

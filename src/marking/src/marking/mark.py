@@ -1,4 +1,4 @@
-"""What a case brought, and all cases of a student."""
+"""The marks of a case, and of all cases of a student."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Mark:
-    """What one case brought; `outcome` "not run" is the course's fault, not the student's."""
+    """The mark of one case; `outcome` "not run" is the course's fault, not the student's."""
 
     name: str
     student: str
@@ -16,12 +16,12 @@ class Mark:
     outcome: str
     points: float
     lost: tuple[str, ...]
-    folder: str  # relative to the results'; "": nothing was driven
-    note: str = ""  # what else has to be known of it, in one line
-    submission_sha256: str = ""  # of what was handed in
+    folder: str  # relative to the results folder; "": nothing was driven
+    note: str = ""  # a remark, in one line
+    submission_sha256: str = ""  # of the submission's files
 
 
 def by_student(marks: Sequence[Mark]) -> dict[str, list[Mark]]:
-    """In the order of their names, whatever order they were marked in."""
+    """Marks by student, sorted by name, whatever order they were marked in."""
     return {student: [mark for mark in marks if mark.student == student]
             for student in sorted({mark.student for mark in marks})}

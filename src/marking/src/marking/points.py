@@ -1,4 +1,4 @@
-"""From what a case's drive showed to points, and why some were lost."""
+"""Computes points from a case's report, and the reasons for lost points."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def points_of(drive: Mapping, points: Points) -> tuple[float, list[str]]:
     closed = drive["laps_closed"] >= drive["laps_wanted"]
     share = 1.0 if closed else drive["driven_share"]
     rows = [(points.finish, share, drive["why"] or "")]
-    # Close to the line, and fast, counts as far as the car came.
+    # Points for closeness and speed are scaled by how far the car came.
     line = _share(drive["rms_lateral_m"], points.line_best_m, points.line_worst_m)
     rows.append((points.line, line * share,
                  f"{drive['rms_lateral_m'] * 100:.1f} cm RMS beside the line"
@@ -31,7 +31,7 @@ def points_of(drive: Mapping, points: Points) -> tuple[float, list[str]]:
 
 
 def mean(points: Sequence[float]) -> float:
-    """Of a submission's cases."""
+    """Mean points of a submission's cases."""
     return round(sum(points) / len(points), 2) if points else 0.0
 
 

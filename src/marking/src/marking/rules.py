@@ -1,4 +1,4 @@
-"""The teacher's marking.yaml, checked: a wrong key or value is one line that names file and key."""
+"""Reads and checks the teacher's marking.yaml; an error is one line that names file and key."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from run_session.resources import read_keys
 
 @dataclass(frozen=True)
 class Points:
-    """What a case is worth."""
+    """The points of a case, and the values at which they are given."""
 
     finish: float
     line: float
@@ -32,7 +32,7 @@ class Points:
 
 @dataclass(frozen=True)
 class Limits:
-    """What a submission may use in one case."""
+    """Resource limits of a submission in one case."""
 
     start_s: float
     simulated_s: float

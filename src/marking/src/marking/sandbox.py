@@ -1,7 +1,7 @@
-"""The sandbox of a submission: bubblewrap, and limits of the kernel's.
+"""The sandbox of a submission: bubblewrap, and the kernel's resource limits.
 
-Inside there are the system and the workspace, read-only, the submission, and an empty home. Of
-processes it sees its own; the network is the case's own loopback (see `namespace`).
+Inside there are the system and the workspace, read-only, the submission, and an empty home. It
+sees only its own processes; the network is the case's own loopback (see `namespace`).
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from pathlib import Path
 from marking.rules import Limits
 from run_session.failure import RunError
 
-# What Python, ROS, OpenCV and the dynamic linker read there, and no more.
+# The entries of /etc that Python, ROS, OpenCV and the dynamic linker read.
 ETC = ("alternatives", "fonts", "group", "hosts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d",
        "localtime", "nsswitch.conf", "passwd", "python3", "python3.11", "python3.13", "ros",
        "ssl/openssl.cnf")
 HOME, SUBMISSION = "/home/student", "/home/submission"
-FIRST_UID = 2_000_000_000  # of users that nobody has
+FIRST_UID = 2_000_000_000  # user ids from here on are not in use
 OPEN_FILES = 512
 
 
 class Kind(enum.Enum):
-    """How a sandbox is made, for want of one way that works everywhere."""
+    """How a sandbox is made; no single way works everywhere."""
 
     ROOT = "root"  # root mounts, then gives up everything
     USER = "user"  # a user namespace
@@ -35,7 +35,7 @@ class Kind(enum.Enum):
 
 
 def available() -> Kind:
-    """The kind that this machine allows; RunError if none, with what to do."""
+    """The kind that this machine allows; a RunError says what to do if there is none."""
     kind = Kind.ROOT if os.getuid() == 0 else Kind.USER
     if not shutil.which("bwrap"):
         raise RunError("no sandbox: bubblewrap is not installed: apt-get install bubblewrap")
@@ -52,28 +52,28 @@ def available() -> Kind:
 
 
 def namespace(kind: Kind) -> list[str]:
-    """What a case's own program is started with: a network of its own, with loopback alone."""
+    """Command prefix of the case's own process: a network of its own, with only loopback."""
     if kind is Kind.NONE:
         return []
     return ["unshare", "--net", *(["--user", "--map-root-user"] if kind is Kind.USER else [])]
 
 
 def shown() -> list[Path]:
-    """What a submission sees besides the system: the workspace, or where it is installed."""
+    """Folders visible to a submission besides the system: the workspace, or its install folder."""
     prefix = Path(sys.prefix)
     beside = (prefix.parent / name for name in ("src", "devel"))
     return [prefix, *(path for path in beside if path.is_dir())]
 
 
 def sandbox(kind: Kind, limits: Limits, folder: Path | None = None) -> list[str]:
-    """What a program is started with that sees this folder as SUBMISSION; the program follows."""
+    """Command prefix of a sandboxed program, which sees `folder` as SUBMISSION."""
     memory, disk = int(limits.memory_mb * 1e6), int(limits.disk_mb * 1e6)
     limited = ["prlimit", f"--cpu={max(1, int(limits.cpu_s))}", f"--data={memory}",
                f"--fsize={disk}", f"--nofile={OPEN_FILES}", "--core=0"]
     if kind is Kind.NONE:
         return limited
-    limited.append(f"--nproc={int(limits.processes) * 2}")  # threads, too; the rest is Box's
-    if kind is Kind.ROOT:  # the kernel counts processes by user: for each sandbox another
+    limited.append(f"--nproc={int(limits.processes) * 2}")  # includes threads; Box limits the rest
+    if kind is Kind.ROOT:  # the kernel counts processes per user: one user per sandbox
         user = str(FIRST_UID + os.getpid())
         limited = ["setpriv", "--reuid", user, "--regid", user, "--clear-groups",
                    "--inh-caps=-all", "--no-new-privs", *limited]
@@ -91,7 +91,7 @@ def _view(limits: Limits, folder: Path | None) -> list[str]:
     size = ["--size", str(int(limits.disk_mb * 2**20))]
     above = {str(each): None for path in shown() for each in reversed(path.parents)}
     return [
-        # Folders above a mount are closed to others unless they are made before it.
+        # Parent folders of a mount are not readable by others unless created before it.
         *_each(("--perms", "755", "--dir"), ["/etc", "/etc/ssl", "/home"]),
         "--proc", "/proc", "--dev", "/dev",
         *_each(("--perms", "1777", *size, "--tmpfs"), ["/tmp", "/dev/shm", HOME]),

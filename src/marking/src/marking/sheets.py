@@ -1,4 +1,4 @@
-"""marks.csv, marks.html, and a page of each student that can be sent to them."""
+"""marks.csv, marks.html, and a page for each student, to be sent to them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from marking.sandbox import Kind
 from run_session.files import write_whole
 
 MARKS, PAGE, STUDENT_PAGE = "marks.csv", "marks.html", "index.html"
-FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # which a spreadsheet would compute
+FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # a spreadsheet would evaluate such cells
 STYLE = ("<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}"
          "img,video{max-width:100%}table{border-collapse:collapse}ul{margin:0;padding-left:1em}"
          "td,th{text-align:left;padding:.4em 1em;border-bottom:1px solid #ccc;"
@@ -27,7 +27,7 @@ STYLE = ("<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}"
 
 
 def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, out: Path) -> None:
-    """The table of all students, for a spreadsheet and for a browser."""
+    """Write the table of all students, for a spreadsheet and for a browser."""
     cases = sorted({mark.case for rows in marks.values() for mark in rows})
     table = io.StringIO(newline="")
     writer = csv.writer(table)
@@ -38,7 +38,7 @@ def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, o
                          *[points.get(case, "") for case in cases],
                          "no" if kind is Kind.NONE else "yes", _cell("; ".join(_lost(rows))),
                          _notes(rows)])
-    write_whole(out / MARKS, table.getvalue().encode("utf-8-sig"))  # Excel needs the mark
+    write_whole(out / MARKS, table.getvalue().encode("utf-8-sig"))  # Excel needs the BOM
     body = "".join(
         f'<tr><td><a href="students/{_link(student)}/{STUDENT_PAGE}">{escape(student)}</a></td>'
         f"<td>{mean([mark.points for mark in rows]):g}</td><td>{_list(_lost(rows))}"
@@ -56,7 +56,7 @@ def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, o
 
 
 def write_student_pages(marks: Mapping[str, Sequence[Mark]], rules: Rules, out: Path) -> None:
-    """students/ID/index.html and its pictures: nothing else is in that folder."""
+    """Write students/ID/index.html and its pictures, and nothing else, into that folder."""
     for student, rows in marks.items():
         folder = out / "students" / student
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""The simulator's state log, and how much was written beside it."""
+"""The simulator's state log, and the size of log folders."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ STATE_LOG = "state.jsonl"
 
 
 def bytes_below(folder: Path) -> int:
-    """Of all files of a folder, while others write there."""
+    """Total size of a folder's files, while other processes write there."""
     total = 0
     for path in folder.rglob("*"):
         with contextlib.suppress(FileNotFoundError):
@@ -22,7 +22,7 @@ def bytes_below(folder: Path) -> int:
 
 
 def sample_of(entry: dict, robot: str) -> Sample | None:
-    """Where the robot was, from a line of the state log; None: it is not of that."""
+    """The robot's pose from an entry of the state log; None if it has none."""
     pose: Sequence[float] | None = entry.get("poses", {}).get(robot)
     if pose is None:
         return None

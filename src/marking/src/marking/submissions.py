@@ -1,4 +1,4 @@
-"""The submissions of a folder: a file, a folder or an archive each, named by the student's id."""
+"""Finds the submissions in a folder: a file, folder or archive each, named by student id."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ NO_PROGRAMS = ("__init__.py", "setup.py", "conftest.py", "test_*.py", "*_test.py
 
 @dataclass(frozen=True)
 class Submission:
-    """What one student handed in; `fault` says in one line why it cannot be run."""
+    """One student's submission; `fault` says in one line why it cannot be run."""
 
     student: str
-    source: Path  # as it was handed in
+    source: Path  # the file or folder as handed in
     fault: str = ""
 
 
 def find_submissions(folder: Path) -> list[Submission]:
-    """In the order of their names; RunError if there are none."""
+    """All submissions, sorted by name; RunError if there are none."""
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
     except OSError as error:
@@ -47,13 +47,13 @@ def find_submissions(folder: Path) -> list[Submission]:
 
 
 def digest(source: Path) -> str:
-    """SHA-256 over the names and bytes of a submission's files; links count by where they lead,
-    what is more than can be unpacked by size and time of change."""
+    """SHA-256 over the names and contents of a submission's files; of links it takes the target,
+    of files too large to unpack the size and modification time."""
     sums, left = hashlib.sha256(), MOST_BYTES
     paths = [] if source.is_symlink() else sorted(source.rglob("*"))
     for path in [source, *paths]:
         sums.update(os.fsencode(path.relative_to(source)) + b"\0")
-        with contextlib.suppress(OSError):  # what cannot be read is said when it is unpacked
+        with contextlib.suppress(OSError):  # unreadable files are reported when unpacking
             if path.is_symlink():
                 sums.update(os.fsencode(os.readlink(path)))
             elif path.is_file():
@@ -68,7 +68,7 @@ def digest(source: Path) -> str:
 
 
 def prepare(submission: Submission, folder: Path, patterns: Sequence[str]) -> Path:
-    """Copy or unpack it into the folder, made anew; returns its program there. UnpackError."""
+    """Copy or unpack it into a new folder; returns its program there. Raises UnpackError."""
     if submission.fault:
         raise UnpackError(submission.fault)
     unpack(submission.source, folder)
@@ -76,7 +76,7 @@ def prepare(submission: Submission, folder: Path, patterns: Sequence[str]) -> Pa
 
 
 def choose_program(folder: Path, patterns: Sequence[str]) -> Path:
-    """The only Python file, else the only one that fits the first pattern that fits any."""
+    """The only Python file, else the only match of the first pattern that matches any."""
     files = [path.relative_to(folder) for path in sorted(folder.rglob("*.py"))
              if path.is_file() and not any(fnmatch(path.name, each) for each in NO_PROGRAMS)
              and "__MACOSX" not in path.parts]
@@ -95,7 +95,7 @@ def choose_program(folder: Path, patterns: Sequence[str]) -> Path:
 
 
 def _student(entry: os.DirEntry) -> tuple[str, str]:
-    """The student's id, and what is wrong with the entry."""
+    """The student's id, and a fault in the entry or ""."""
     name = file_name(entry.name)
     stem = archive_stem(name)
     student = stem.removesuffix(".py") if stem == name else stem

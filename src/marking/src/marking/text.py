@@ -1,4 +1,4 @@
-"""What strangers wrote, made fit for one line of a terminal, a table or a page."""
+"""Makes untrusted text safe for one line of a terminal, a table or a page."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import os
 
 
 def one_line(text: str) -> str:
-    """Without line ends, terminal codes and bytes that are no text."""
+    """The text without line ends, terminal codes and undecodable bytes."""
     whole = text.encode("utf-8", "replace").decode()
     return "".join(each if each.isprintable() else " " for each in whole).strip()
 

@@ -50,7 +50,7 @@ class MarkedCase(Case):
 
 
 class MarkingTrial(ReportedTrial):
-    """Submissions times tracks times seeds."""
+    """One case for each combination of submission, track and seed."""
 
     package, program = "marking", "mark"
     does = "Mark a folder of submissions; each drives in a sandbox."
@@ -121,7 +121,7 @@ class MarkingTrial(ReportedTrial):
             scene.launch_args)
 
     def run(self) -> dict:
-        """The report of the drive, or what went wrong before it."""
+        """The report of the drive, or what prevented it."""
         if self._fault:
             return {"outcome": "fault", "violations": [], "fault": self._fault}
         report = self._drive(self._file)
@@ -147,7 +147,7 @@ class MarkingTrial(ReportedTrial):
 
     def score(self, record: dict) -> Mark:
         case = self._case
-        shutil.rmtree(self._folder(case) / SUBMISSION, ignore_errors=True)  # the teacher has it
+        shutil.rmtree(self._folder(case) / SUBMISSION, ignore_errors=True)  # the original is kept
         points, lost = points_of(record, self._rules.points)
         folder = "" if self._fault else str(self._folder(case).relative_to(self._out))
         return Mark(case.name, case.student, _case_name(case), record["outcome"], points,
@@ -172,7 +172,7 @@ class MarkingTrial(ReportedTrial):
                 "marks": [dataclasses.asdict(mark) for mark in results]}
 
     def earlier(self, options: argparse.Namespace) -> list[Mark]:
-        """None is no mistake."""
+        """Results so far; it is no error if there are none."""
         return super().earlier(options) if (options.out / REPORT).exists() else []
 
     def from_values(self, values: dict) -> list[Mark]:
@@ -204,7 +204,7 @@ class MarkingTrial(ReportedTrial):
 
 
 def _digest(course: str, files: Sequence[Path]) -> str:
-    """SHA-256 of what a mark depends on beside the submission."""
+    """SHA-256 of all that a mark depends on besides the submission."""
     sums = hashlib.sha256(course.encode())
     for file in files:
         sums.update(hashlib.sha256(file.read_bytes()).digest())

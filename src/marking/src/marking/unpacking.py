@@ -1,4 +1,4 @@
-"""Copies what strangers handed in, zip and tar unpacked: bounded, nothing outside the folder."""
+"""Copies untrusted files and unpacks zip and tar: bounded, and never outside the folder."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from marking.text import file_name, one_line
 
 MOST_BYTES = 64 * 2**20  # of all files together, unpacked
 MOST_FILES = 2000
-MOST_MEMORY, MOST_TIME = 2**30, 20  # bytes, and s of a processor, for unpacking
+MOST_MEMORY, MOST_TIME = 2**30, 20  # bytes, and s of CPU time, for unpacking
 TOO_MUCH = "it takes too much memory or time to unpack"
-LONGEST_NAME = 200  # bytes of one name in UTF-8; file systems take 255
+LONGEST_NAME = 200  # bytes of one name in UTF-8; file systems allow 255
 UTF8_NAME = 0x800  # bit of a zip entry's flags: its name is UTF-8
 ENDINGS = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz")
 
@@ -39,7 +39,7 @@ class _Member:
 
 
 def is_archive(path: Path) -> bool:
-    """By its name, as course systems export them."""
+    """Whether its name is that of an archive, as course systems export them."""
     return path.name.lower().endswith(ENDINGS)
 
 
@@ -50,9 +50,9 @@ def archive_stem(name: str) -> str:
 
 
 def unpack(source: Path, folder: Path) -> None:
-    """Unpack or copy into a folder, which is made anew; UnpackError leaves none.
+    """Unpack or copy into a new folder; on UnpackError the folder is removed.
 
-    In a process of its own: a header alone can ask for any amount of memory or time.
+    Runs in a process of its own: a header alone can demand any amount of memory or time.
     """
     shutil.rmtree(folder, ignore_errors=True)
     command = ["prlimit", f"--as={MOST_MEMORY}", f"--cpu={MOST_TIME}", "--core=0",
@@ -66,7 +66,7 @@ def unpack(source: Path, folder: Path) -> None:
 
 
 def _unpack(source: Path, folder: Path) -> None:
-    """UnpackError says why not, and may leave a part."""
+    """Do the work; UnpackError gives the reason, and may leave an incomplete folder."""
     try:
         if not is_archive(source) or source.is_dir():
             _write(_plain_members(source), folder)
@@ -78,7 +78,7 @@ def _unpack(source: Path, folder: Path) -> None:
         else:
             with tarfile.open(source) as opened:
                 _write(_tar_members(opened), folder)
-    # zipfile says NotImplementedError of a compression and RuntimeError of a password.
+    # zipfile raises NotImplementedError for unknown compression, RuntimeError for a password.
     except (zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, EOFError,
             NotImplementedError, RuntimeError, OSError, ValueError) as error:
         raise UnpackError(f"cannot be unpacked: {error}") from error
@@ -110,7 +110,7 @@ def _inside(name: str) -> PurePosixPath:
 
 
 def _plain_members(source: Path) -> Iterator[_Member]:
-    """A file, or those of a folder."""
+    """A single file, or the files of a folder."""
     for path in [source] if source.is_file() else sorted(source.rglob("*")):
         name = path.relative_to(source if source.is_dir() else source.parent)
         if path.is_symlink():
@@ -129,7 +129,7 @@ def _zip_members(archive: zipfile.ZipFile) -> Iterator[_Member]:
 
 
 def _zip_name(entry: zipfile.ZipInfo) -> str:
-    """Chinese Windows writes names in GBK, which Python reads as code page 437."""
+    """An entry's name; Chinese Windows writes GBK, which Python reads as code page 437."""
     if entry.flag_bits & UTF8_NAME:
         return entry.filename
     for encoding in ("utf-8", "gbk"):
@@ -151,8 +151,8 @@ def _tar_members(archive: tarfile.TarFile) -> Iterator[_Member]:
 
 
 def main(source: str, folder: str) -> int:
-    """Says on one line why it cannot be unpacked."""
-    os.umask(0o022)  # in the sandbox it is another user's
+    """Unpack; returns the exit code, and prints one line if that fails."""
+    os.umask(0o022)  # the sandbox reads it as another user
     Path(folder).mkdir(parents=True)
     try:
         _unpack(Path(source), Path(folder))

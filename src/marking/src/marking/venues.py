@@ -1,4 +1,4 @@
-"""Where submissions drive: a course on a track, with a start and a light drawn from a seed."""
+"""Where submissions drive: a course on a track, with start pose and light drawn from a seed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from run_session.failure import RunError
 from run_session.resources import find_package
 from trial_worlds.light import write_lit_world
 
-# What can be driven: our launch file of that name, and the course file of evaluation's.
+# By course: its name is our launch file's; the value is a course file of evaluation.
 COURSES = {"course": "course", "race": "race", "lane": "lane_empty"}
 
 
@@ -33,15 +33,15 @@ def driven(name: str) -> Course:
 
 @dataclass(frozen=True)
 class Scene:
-    """What a case drives on."""
+    """The files of a case's course."""
 
     track: Path  # YAML of its centre line
-    models: str  # folders of models, for the environment
+    models: str  # folders of models, for an environment variable
     launch_args: list[str]  # for roslaunch, name:=value
 
 
 def make_scene(rules: Rules, track: int, seed: int, folder: Path) -> Scene:
-    """The scene of a track (0: the course's own) and a seed; its files go to the folder."""
+    """Make the scene of a track (0: the course's own) and a seed; its files go to the folder."""
     path = Path(rules.tracks[track - 1]) if track else None
     world, line, models = _VENUES[rules.course](path, folder / "track")
     draw = _draw(rules, seed)
@@ -59,7 +59,7 @@ def make_scene(rules: Rules, track: int, seed: int, folder: Path) -> Scene:
 
 
 def _draw(rules: Rules, seed: int) -> Disturbance:
-    """Start and light of a case, evenly distributed within the rules' bounds."""
+    """Start pose and light of a case, uniformly distributed within the rules' bounds."""
     random = np.random.default_rng(seed)
     most, turn = rules.start_sideways_m, math.radians(rules.start_turn_deg)
     return Disturbance(sideways=random.uniform(-most, most), along=0.0,
@@ -67,7 +67,7 @@ def _draw(rules: Rules, seed: int) -> Disturbance:
                        light=random.uniform(*rules.light))
 
 
-# Of each course: the world, the track's YAML, and the folder of the world's own models.
+# A course's world, its track's YAML, and the folder of the world's own models.
 _Venue = tuple[Path, Path, Path]
 
 

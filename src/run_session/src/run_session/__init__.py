@@ -1,1 +1,1 @@
-"""What every watched run stands on: processes, a ROS master, the simulator, true poses."""
+"""What every supervised run needs: processes, a ROS master, the simulator, true poses."""

@@ -1,4 +1,4 @@
-"""Asking one service of the simulator again and again, at a rate."""
+"""Calls one service of the simulator repeatedly, at a given rate."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from std_srvs.srv import Empty
 
 
 class Asker:
-    """Keeps the connection open, and makes it again when it broke; ends with `ended`."""
+    """Keeps the connection open and reconnects when it breaks; stops when `ended` is set."""
 
     def __init__(self, ended: threading.Event):
         self._ended = ended
         self._service, self._kind, self._proxy = "", Empty, None
 
     def ticks(self, rate_hz: float, service: str = "", kind: type = Empty) -> Iterator[None]:
-        """Times to ask this service, by wall time."""
+        """Yields at this rate (wall time), each time the service is to be called."""
         self._service, self._kind, self._proxy = service, kind, None
         while not self._ended.is_set():
             began = time.monotonic()
@@ -26,7 +26,7 @@ class Asker:
             self._ended.wait(max(0.0, began + 1.0 / rate_hz - time.monotonic()))
 
     def call(self, *arguments: str) -> object | None:
-        """The answer; None where there is none."""
+        """The service's response; None if the call failed."""
         try:
             if self._proxy is None:
                 self._proxy = rospy.ServiceProxy(self._service, self._kind, persistent=True)

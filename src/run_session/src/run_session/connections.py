@@ -1,4 +1,4 @@
-"""Who is connected to whom, as the master and the nodes themselves say it."""
+"""Which nodes are connected to which, as the master and the nodes report it."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ ANSWER_TIME = 1.0  # s, wall, for one answer of a node
 
 @dataclass(frozen=True)
 class Connections:
-    """Node names by topic, and the links that publishers have open: (publisher, topic, subscriber).
+    """Node names by topic, and the publishers' open links: (publisher, topic, subscriber).
 
-    The master knows who wants to be connected; only the publisher knows who is.
+    The master knows which nodes should be connected; only the publisher knows which are.
     """
 
     publishers: dict[str, frozenset[str]]
@@ -23,7 +23,7 @@ class Connections:
     links: frozenset[tuple[str, str, str]]
 
     def missing_link(self, topic: str) -> str | None:
-        """The first link of this topic that is wanted and not open yet, in words."""
+        """The first connection of this topic that is not open yet, in words; None if all are."""
         for publisher in sorted(self.publishers[topic]):
             for subscriber in sorted(self.subscribers[topic] - {publisher}):
                 if (publisher, topic, subscriber) not in self.links:
@@ -32,9 +32,9 @@ class Connections:
 
 
 def look_up(master_uri: str, caller: str, topics: Iterable[str]) -> Connections:
-    """Ask the master, and each publisher of these topics; one that does not answer has no links.
+    """Query the master and each publisher of these topics; one that does not answer has no links.
 
-    Raises OSError, xmlrpc.client.Error or rosgraph.MasterException where the master fails.
+    Raises OSError, xmlrpc.client.Error or rosgraph.MasterException if the master fails.
     """
     master = rosgraph.Master(caller, master_uri)
     publishing, subscribing, _ = master.getSystemState()
@@ -51,7 +51,7 @@ def look_up(master_uri: str, caller: str, topics: Iterable[str]) -> Connections:
 
 
 def _links_of(master: rosgraph.Master, caller: str, node: str) -> list[tuple[str, str, str]]:
-    """What a node publishes to, from its getBusInfo (ROS slave API)."""
+    """A node's outgoing connections, from its getBusInfo (ROS slave API)."""
     try:
         slave = xmlrpc.client.ServerProxy(master.lookupNode(node), _ImpatientTransport())
         _, _, connections = slave.getBusInfo(caller)
@@ -61,11 +61,11 @@ def _links_of(master: rosgraph.Master, caller: str, node: str) -> list[tuple[str
             if direction == "o" and is_open
         ]
     except (OSError, xmlrpc.client.Error, rosgraph.MasterException, TypeError, ValueError):
-        return []  # it hangs, is gone, or answers what is no answer
+        return []  # it hangs, is gone, or its answer is malformed
 
 
 class _ImpatientTransport(xmlrpc.client.Transport):
-    """Does not wait for ever for a node that hangs."""
+    """Has a timeout, because a node may hang."""
 
     def make_connection(self, host: str) -> object:
         connection = super().make_connection(host)

@@ -1,4 +1,4 @@
-"""What is driven: launch file, robot, topics and track."""
+"""What a course file specifies: launch file, robot, topics and track."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ class Course:
 
     launch: tuple[str, str]  # package and launch file, which has an argument `follower`
     follower_package: str
-    followers: str  # files among which those that drive are, with * for any text: below the
+    followers: str  # glob pattern of files, some of which are followers: below the
     # package's folder, or python://PACKAGE/... for modules
-    follower: str  # the script that drives unless another is asked for
-    drives_by: str  # a word that stands in files that drive
+    follower: str  # the script that drives by default
+    drives_by: str  # a word by which the files that are followers are recognised
     robot: str  # model name in the simulator; {VARIABLE:default} is taken from the environment
     robot_argument: str  # launch argument that replaces the variable
     track: str  # path, or package://PACKAGE/PATH
@@ -28,12 +28,12 @@ class Course:
     out: str  # where results go
     camera: str
     camera_info: str
-    commands: str  # geometry_msgs/Twist, one for each image
-    odometry: str  # nav_msgs/Odometry, true poses
+    commands: str  # topic of geometry_msgs/Twist, one for each image
+    odometry: str  # topic of nav_msgs/Odometry, true poses
     controllers: str  # namespace of the controller manager that takes the lockstep topics, or ""
     lockstep: tuple[str, ...]  # topics that the world waits for after each image
     sensors: tuple[str, ...]  # topics that go into the fingerprint
-    film_band: float  # share of the image's height where the film marks the line; 0: nowhere
+    film_band: float  # share of the image's height at which the video marks the line; 0: nowhere
 
     def robot_name(self, launch_args: tuple[str, ...]) -> str:
         """The model's name, as the launch file with these arguments (name:=value) spawns it."""
@@ -47,13 +47,13 @@ class Course:
         return re.sub(r"\{(\w+):(\w+)\}", fill, self.robot)
 
     def controller_names(self) -> set[str]:
-        """Those that must have been started before time begins."""
+        """Controllers that must have been started before simulated time begins."""
         within = f"{self.controllers}/"
         return {topic.removeprefix(within).partition("/")[0] for topic in self.lockstep
                 if self.controllers and topic.startswith(within)}
 
     def follower_files(self) -> list[Path]:
-        """All files that `followers` fits."""
+        """All files that match `followers`."""
         package, _, rest = self.followers.removeprefix("python://").partition("/")
         if not self.followers.startswith("python://"):
             return list(find_package(self.follower_package).glob(self.followers))

@@ -1,4 +1,4 @@
-"""Processor time and memory of the processes below this one, by the names that ROS gave them."""
+"""CPU time and memory of this process's descendants, by their ROS node names."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class Process:
     """One process as it is now."""
 
     pid: int
-    name: str  # of the ROS node, or of the program; a nameless child has its parent's
-    cpu: float  # s of processor time since its start
+    name: str  # of the ROS node, or of the program; else the parent's
+    cpu: float  # s of CPU time since its start
     memory: int  # bytes in RAM
 
 
 def processes(root: int | None = None) -> list[Process]:
-    """All processes below `root` (this one), without it."""
+    """All descendants of process `root` (default: this one)."""
     found: list[Process] = []
     names: dict[int, str] = {}
     for each in psutil.Process(root).children(recursive=True):  # parents come first
@@ -38,7 +38,7 @@ def processes(root: int | None = None) -> list[Process]:
 
 
 def process_name(command_line: str, parent: str) -> str:
-    """What to call a process: the node's name, else the program's, else as its parent."""
+    """A process's name: the node's, else the program's, else the parent's."""
     node = NODE_NAME.search(command_line)
     if node:
         return node[1].strip("/")
@@ -47,13 +47,13 @@ def process_name(command_line: str, parent: str) -> str:
 
 
 class CpuMeter:
-    """Percent of one core that each process used since the last look."""
+    """Percent of one core that each process used since the last call."""
 
     def __init__(self) -> None:
         self._looked, self._used = time.monotonic(), self._now()
 
     def look(self) -> dict[str, float]:
-        """By name; what has ended since the last look is not in it."""
+        """Percent of a core by name; processes that ended since the last call are left out."""
         now, used = time.monotonic(), self._now()
         spent: dict[str, float] = defaultdict(float)
         for pid, (name, seconds) in used.items():

@@ -1,8 +1,8 @@
-"""What ends a run before it could be scored."""
+"""The error that ends a run before it could be scored."""
 
 
 class RunError(Exception):
-    """The run could not start, or something it needs died; one line, and details."""
+    """The run could not start, or a process that it needs died; has one line, and details."""
 
     def __init__(self, message: str, details: str = ""):
         super().__init__(message)

@@ -1,4 +1,4 @@
-"""Result files that are whole or not there."""
+"""Result files that are written completely or not at all."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from pathlib import Path
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Written beside it first: a run that is ended, or a full disk, leaves the last file whole.
+    """Write a file by way of a temporary one: if that fails, the previous file stays intact.
 
-    OSError names the file.
+    An OSError names the file.
     """
     half = path.with_name(f"{path.name}.tmp")
     try:
@@ -18,5 +18,5 @@ def write_whole(path: Path, content: bytes) -> None:
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(path)) from error
     finally:
-        with contextlib.suppress(OSError):  # it has become the file, or never was
+        with contextlib.suppress(OSError):  # it has been renamed, or was never created
             half.unlink()

@@ -1,4 +1,4 @@
-"""SHA-256 over every byte that the robot's sensors sent, to compare one run with another."""
+"""SHA-256 over every byte that the robot's sensors sent, to compare runs."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from collections.abc import Iterable
 
 import rospy
 
-LAST_MESSAGE_TIME = 1.0  # s, wall, to wait for what is still on its way
+LAST_MESSAGE_TIME = 1.0  # s, wall, to wait for messages still in transit
 SEQ_AND_STAMP = struct.Struct("<III")  # how a serialised std_msgs/Header begins
 
 
 class Fingerprints:
     """Takes the raw messages of all sensor topics; each begins with a header.
 
-    A node has one type for a topic: nothing else here may subscribe to these.
+    rospy allows one message type per topic and node: nothing else here may subscribe to these.
     """
 
     def __init__(self, topics: Iterable[str]):
@@ -26,7 +26,7 @@ class Fingerprints:
         self._rows: dict[str, list[tuple[int, float, bytes]]] = {}  # seq, stamp in s, SHA-256
 
     def start(self) -> None:
-        """Begin to listen."""
+        """Subscribe."""
         for topic in self._topics:
             rows = self._rows[topic] = []
             rospy.Subscriber(topic, rospy.AnyMsg, self._take, callback_args=rows, queue_size=None,
@@ -39,9 +39,9 @@ class Fingerprints:
             rows.append(row)
 
     def sums(self, until: float) -> dict[str, str | None]:
-        """For each topic the sum over its messages up to this simulated time (s).
+        """For each topic the checksum of its messages up to this simulated time (s).
 
-        None where a message was missed: then there is nothing to compare.
+        None if a message was missed: then the checksum would be meaningless.
         """
         give_up = time.monotonic() + LAST_MESSAGE_TIME
         while not self._later_than(until) and time.monotonic() < give_up:

@@ -1,4 +1,4 @@
-"""Counts the camera's images and the commands that answer them."""
+"""Counts the camera's images and the commands sent in answer."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import bisect
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import CameraInfo
 
-UNANSWERED_SAYS = "lockstep: no message on"  # the simulator's warning, once in ten seconds
+UNANSWERED_SAYS = "lockstep: no message on"  # in the simulator's warning, at most every 10 s
 
 
 class FrameCount:
-    """Images are counted by their number (header.seq), so that one missed here counts as well.
+    """Images are counted by header.seq, so that one missed here counts as well.
 
-    In lockstep they count from the first one, because the follower is there from the beginning;
-    else from the one that its first command answers.
+    In lockstep they count from the first one, because the follower runs from the beginning;
+    otherwise from the one that its first command answers.
     """
 
     def __init__(self, lockstep: bool):
@@ -25,36 +25,36 @@ class FrameCount:
         self.commands = 0
 
     def count_frame(self, message: CameraInfo) -> None:
-        """One more image; its CameraInfo is less to receive."""
+        """Count one more image, by its CameraInfo, which is smaller."""
         if self._lockstep and self._first is None:
             self._first = message.header.seq
         self._numbers.append(message.header.seq)
         self._times.append(message.header.stamp.to_sec())
 
     def count_command(self, _message: Twist) -> None:
-        """One more command; a follower sends one for each image."""
+        """Count one more command; a follower sends one for each image."""
         if self._first is None and self._numbers:
             self._first = self._numbers[-1]
         self.commands += 1
 
     def sent(self, until: float) -> int:
-        """Images that count, stamped up to this simulated time (s)."""
+        """Number of images that count, stamped up to this simulated time (s)."""
         seen = bisect.bisect_right(self._times, until)
         if self._first is None or not seen:
             return 0
         return max(0, self._numbers[seen - 1] - self._first + 1)
 
     def later_than(self, time: float) -> bool:
-        """Whether an image after this simulated time (s) has come, so that all before it have."""
+        """Whether an image after this simulated time (s) has arrived, and so all before it."""
         return bool(self._times) and self._times[-1] > time
 
 
 def frame_figures(sent: int, commands: int, lockstep_log: list[str] | None) -> dict:
     """Images sent, answered and dropped.
 
-    A follower answers each picture with one command, so pictures without a command were dropped
-    on the way to it or by it. In lockstep (with the run's log) they are all answered, unless the
-    simulator said that it went on without.
+    A follower answers each image with one command, so images without a command were dropped in
+    transit or by the follower. In lockstep (when the run's log is given) all are answered, unless
+    the simulator logged that it went on without an answer.
     """
     dropped = max(sent - commands, 0)
     if lockstep_log is not None:

@@ -1,4 +1,4 @@
-"""Ctrl-C as an exception, once at a time."""
+"""Ctrl-C, SIGTERM and SIGHUP as an exception that is raised once."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def interruptible() -> Iterator[None]:
-    """The first Ctrl-C or SIGTERM raises KeyboardInterrupt; later ones do not disturb the end.
+    """The first of these signals raises KeyboardInterrupt; later ones do not disturb the cleanup.
 
-    Within it again: what then goes on may be interrupted, too.
+    Used again within it, the inner block can be interrupted once more.
     """
 
     def interrupt(_number: int, _frame: object) -> None:

@@ -1,4 +1,4 @@
-"""Brings up roscore and the launch file, and notices when a part of them dies."""
+"""Starts roscore and the launch file, and notices when one of their processes dies."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ USUAL_PORT = 11311
 ROSCORE_TIME = 300.0  # s, wall; an emulated ARM processor takes more than 20
 LOOK_PERIOD = 0.05  # s, wall
 ROSCORE_LOG = "roscore.log"  # in the folder of each run's logs
-MAY_FINISH = ("spawn",)  # a node so named has done its work when it ends with exit code 0
+MAY_FINISH = ("spawn",)  # nodes of these names may end with exit code 0
 DIED = re.compile(r"\[([\w/.-]+)\] process has died \[(?:pid \d+, )?exit code (-?\d+)")
 REQUIRED = re.compile(r"REQUIRED process \[([\w/.-]+)\] has died!")
 EXIT_CODE = re.compile(r"process has died \[(?:pid \d+, )?exit code (-?\d+)")
@@ -37,12 +37,12 @@ class Launched:
         self, family: Family, log_folder: Path, follower: str = "", vehicle: str = "car",
         alone: bool = False
     ):
-        """`alone`: in a network namespace of its own, where nobody else chooses a port."""
+        """`alone`: in a network namespace of its own, where no other run chooses a port."""
         self._family, self._follower, self._vehicle = family, follower, vehicle
         self.log_folder = log_folder
         _remove_logs(self.log_folder)
         self.log_folder.mkdir(parents=True)
-        # From looking for a port to listening there: no other run may choose the same one.
+        # Held from choosing a port until roscore listens, so that no other run takes the same one.
         turn = log_folder if alone else Path(tempfile.gettempdir())
         self._turn = take_turn(turn / f"course_run-{os.getuid()}.lock")
         self.port = free_port()
@@ -54,11 +54,11 @@ class Launched:
             PYTHONUNBUFFERED="1",
         )
         self._children: list[Child] = []
-        self._said: list[str] = []  # lines of all children that `check` has read
+        self._said: list[str] = []  # output lines of all children, as `check` has read them
         self._required: dict[str, str] = {}  # child's name -> required process just reported dead
 
     def start_roscore(self) -> None:
-        """Start roscore and wait until it is up; this process's nodes are then its."""
+        """Start roscore and wait until it is up; this process's nodes then use it."""
         os.environ["ROS_MASTER_URI"] = self.master_uri
         self.start(Path(ROSCORE_LOG).stem, ["roscore", "-p", str(self.port)])
         until = time.monotonic() + ROSCORE_TIME
@@ -80,7 +80,7 @@ class Launched:
         return self._children[-1]
 
     def run(self, name: str, command: list[str], limit: float) -> None:
-        """Run one program to its end; RunError if that is not exit code 0 within `limit`, s."""
+        """Run one program to its end; RunError unless it exits with 0 within `limit`, s."""
         child = self.start(name, command)
         self._children.remove(child)
         until = time.monotonic() + limit
@@ -100,10 +100,10 @@ class Launched:
         status: Callable[[str], None] = lambda _: None,
         pause: float = LOOK_PERIOD,
     ) -> object:
-        """What the condition gives once it is true; RunError if it is not within `limit`, s.
+        """The condition's value once it is true; RunError if that takes longer than `limit`, s.
 
-        `what` names what is not there yet, and `status` shows it meanwhile. Between two looks
-        there are `pause` s, wall: 0 for a condition that waits by itself.
+        `what` names what is awaited, and `status` shows it meanwhile. The condition is checked
+        every `pause` s, wall; 0: it waits by itself.
         """
         until = time.monotonic() + limit
         while not (value := condition()):
@@ -116,12 +116,12 @@ class Launched:
         return value
 
     def end(self, child: Child, limit: float = 2 * INTERRUPT_TIME) -> None:
-        """End one program again, by force after `limit` (s, wall); then it is no failure."""
+        """End one program, by force after `limit` (s, wall); its end is then not a failure."""
         self._children.remove(child)
         self._family.end(child, limit)
 
     def check(self, sim_time: float | None) -> None:
-        """RunError if anything that the run needs has died."""
+        """RunError if a process that the run needs has died."""
         when = f"before the {self._vehicle} drove"
         if sim_time is not None:
             when = f"at simulated time {sim_time:.1f} s"
@@ -140,7 +140,7 @@ class Launched:
                 )
 
     def count_said(self, text: str) -> int:
-        """How many lines, of those that `check` has read, hold this text."""
+        """How many of the lines that `check` has read contain this text."""
         return sum(text in line for line in self._said)
 
     def tail(self) -> str:
@@ -148,7 +148,7 @@ class Launched:
         return self._children[-1].last_lines()
 
     def _death_in(self, child: Child, line: str) -> str | None:
-        """What a line of roslaunch's says about a process that ended, in our words."""
+        """What a line of roslaunch's output says about a process that ended, in our words."""
         died, required, code = DIED.search(line), REQUIRED.search(line), EXIT_CODE.search(line)
         if died:
             return f"{self._role(died[1])} died ({describe_exit(int(died[2]))})"
@@ -176,7 +176,7 @@ class Launched:
 
 
 def _remove_logs(folder: Path) -> None:
-    """Those of the run before; RunError of a folder that no run wrote."""
+    """Remove the previous run's logs; RunError for a folder that no run wrote."""
     if not folder.exists():
         return
     if not folder.is_dir() or (any(folder.iterdir()) and not (folder / ROSCORE_LOG).exists()):
@@ -196,7 +196,7 @@ def describe_exit(code: int) -> str:
 
 
 def free_port() -> int:
-    """The usual port if nobody listens there, else another."""
+    """ROS's default port if it is free, else another."""
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
@@ -207,7 +207,7 @@ def free_port() -> int:
 
 
 def is_up(master_uri: str) -> bool:
-    """Whether roscore has named its run; a roslaunch before that does it, and roscore then ends."""
+    """Whether roscore has set /run_id; if roslaunch starts earlier and sets it, roscore exits."""
     try:
         code, _, named = xmlrpc.client.ServerProxy(master_uri).hasParam("/course_run", "/run_id")
     except (OSError, xmlrpc.client.Error, HTTPException, ExpatError):

@@ -1,4 +1,4 @@
-"""The simulator's services that a run uses; topics are the course's, from its file."""
+"""The simulator's services that a run uses; topics come from the course file."""
 
 WORLD, POSE = "/gazebo/get_world_properties", "/gazebo/get_model_state"
 UNPAUSE = "/gazebo/unpause_physics"

@@ -1,4 +1,4 @@
-"""What the run sees through ROS: the car's true pose, simulated time, counts of messages."""
+"""Observes a run through ROS: the car's true pose, simulated time, counts of messages."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ LAST_IMAGE_TIME, LAST_COMMAND_TIME = 1.0, 0.1  # s, wall, to wait for them
 
 
 class Observer:
-    """Sees where the car is; in lockstep it also lets time begin, once all are connected.
+    """Records where the car is; in lockstep it also starts time, once all nodes are connected.
 
-    Without lockstep it asks for the pose 25 times a second: that costs the simulator less than
-    /gazebo/model_states, which comes without a time. In lockstep the poses are those of odometry,
+    Without lockstep it requests the pose 25 times a second: that costs the simulator less than
+    /gazebo/model_states, which has no time stamp. In lockstep it takes the poses from odometry,
     which the waffle's drive takes from the world: they come at fixed simulated times, so that
-    every run is scored from the same samples, and cost nobody a wait.
+    every run is scored from the same samples, and delay nothing.
     The node must exist before use_sim_time is set: then it needs no /clock.
     """
 
     def __init__(self, master_uri: str, robot: str, course: Course, lockstep: bool = False,
                  listened: Iterable[str] = ()):
-        """In lockstep, time begins only when `listened`, more topics, are connected, too."""
+        """`listened`: further topics that must be connected before time begins, in lockstep."""
         self._course, self._listened = course, tuple(listened)
         self._master_uri, self._robot, self._lockstep = master_uri, robot, lockstep
         self._samples: queue.SimpleQueue[tuple[float, Seen]] = queue.SimpleQueue()
@@ -55,7 +55,7 @@ class Observer:
         self._thread = threading.Thread(target=self._watch, daemon=True, name="pose")
 
     def start(self) -> None:
-        """Begin to look and to count."""
+        """Begin to observe and count."""
         rospy.Subscriber(self._course.camera_info, CameraInfo, self.frames.count_frame)
         rospy.Subscriber(self._course.commands, Twist, self.frames.count_command)
         if self._lockstep:
@@ -63,11 +63,11 @@ class Observer:
         self._thread.start()
 
     def stop(self) -> None:
-        """Look no more; does not wait for an answer that may never come."""
+        """Stop observing; does not wait for an answer that may never come."""
         self._ended.set()
 
     def samples(self, wait: float) -> list[tuple[float, Seen]]:
-        """All samples since the last call and within this time (s, wall), each with its arrival.
+        """All samples since the last call, after a wait (s, wall), each with its arrival time.
 
         Arrivals are s of time.monotonic().
         """
@@ -79,9 +79,9 @@ class Observer:
         return found
 
     def count(self, until: float) -> tuple[int, int]:
-        """Images up to this simulated time (s), and the commands that have come.
+        """Number of images up to this simulated time (s), and of commands received.
 
-        Waits for what is still on its way, but not long: later commands answer later images.
+        Waits briefly for messages still in transit; later commands answer later images.
         """
         frames = self.frames
         _wait_for(lambda: frames.later_than(until), LAST_IMAGE_TIME)
@@ -108,7 +108,7 @@ class Observer:
                 return
 
     def _wait_for_controllers(self) -> None:
-        """Until they run, or will with the first step: a paused world starts nothing."""
+        """Wait until they run, or will with the first step: a paused world starts no controller."""
         service = f"{self._course.controllers}/{names.LIST_CONTROLLERS}"
         self.missing = f"the car's controllers (service {service})"
         for _ in self._asker.ticks(SETUP_RATE_HZ, service, ListControllers):
@@ -155,9 +155,9 @@ class Observer:
 
 
 def missing_controller(states: Mapping[str, str], wanted: Set[str]) -> str | None:
-    """Which controller a run in lockstep still waits for, in words; None: none.
+    """The controller that a run in lockstep still waits for, in words; None: none.
 
-    Those that are loaded have to be started, too: one that starts later drives otherwise.
+    All loaded controllers have to be started, too: one that starts later drives differently.
     """
     started = {name for name, state in states.items() if state in ("running", "waiting")}
     missing = sorted((wanted | states.keys()) - started)
@@ -167,9 +167,9 @@ def missing_controller(states: Mapping[str, str], wanted: Set[str]) -> str | Non
 
 
 def missing_connection(found: Connections, me: str, course: Course) -> str | None:
-    """What a run in lockstep still waits for before time may begin, in words; None: nothing.
+    """What a run in lockstep still waits for before time begins, in words; None: nothing.
 
-    From the first image on, the follower must answer, and this node (`me`) see pose and answer.
+    From the first image on, the follower must answer, and this node (`me`) get pose and answer.
     """
     watching = found.subscribers[course.camera] - {me}
     driving = found.publishers[course.commands] - {me}

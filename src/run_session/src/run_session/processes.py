@@ -1,4 +1,4 @@
-"""Starts the run's processes and ends every one of them, children of children included."""
+"""Starts the run's processes and ends all of them, including their descendants."""
 
 from __future__ import annotations
 
@@ -49,18 +49,18 @@ class Child:
 
 
 class Family:
-    """All processes of one run; as a context it leaves none behind."""
+    """All processes of one run; used as a context manager, it leaves none behind."""
 
     def __init__(self) -> None:
         self._children: list[Child] = []
-        self.spared: int | None = None  # process id of what is not asked to end with the others
-        # Orphans come to us and not to init: a killed roslaunch cannot leave its nodes behind.
+        self.spared: int | None = None  # id of the process that is not asked to end with the others
+        # Orphans become our children, not init's: a killed roslaunch cannot leave its nodes behind.
         _libc.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
 
     def start(
         self, name: str, command: list[str], environment: Mapping[str, str], log: Path
     ) -> Child:
-        """Start a program in a session of its own; it is asked to end should we die before it."""
+        """Start a program in a session of its own; the kernel signals it to end if we die first."""
         with log.open("wb") as output:
             process = subprocess.Popen(
                 command,
@@ -81,8 +81,8 @@ class Family:
         self.stop()
 
     def end(self, child: Child, limit: float = 2 * INTERRUPT_TIME) -> None:
-        """End one child that was started here with all that it started, by force if that takes
-        longer than this (s, wall)."""
+        """End one child that was started here and all its descendants, by force if that takes
+        longer than `limit` (s, wall)."""
         self._children.remove(child)
         try:
             below = psutil.Process(child.process.pid).children(recursive=True)
@@ -102,7 +102,7 @@ class Family:
         psutil.wait_procs(left)
 
     def stop(self) -> None:
-        """End all: politely, then firmly, then by force; returns when they are gone."""
+        """End all: by SIGINT, SIGTERM, then SIGKILL; returns when they are gone."""
         steps = (
             (signal.SIGINT, INTERRUPT_TIME),
             (signal.SIGTERM, TERMINATE_TIME),
@@ -126,7 +126,7 @@ class Family:
                 continue
 
     def _living(self) -> list[int]:
-        """Process ids of all descendants but the spared one; collects those that ended."""
+        """Process ids of all descendants but the spared one; reaps those that ended."""
         own = {child.process.pid: child.process for child in self._children}
         living = []
         for each in psutil.Process().children(recursive=True):
@@ -156,12 +156,12 @@ def read_log(path: Path) -> list[str]:
 
 
 def end_with_parent(parent: int) -> Callable[[], None]:
-    """What to do between fork and exec: have the kernel ask us to end when this parent dies."""
+    """A preexec function: has the kernel send the child SIGTERM when this parent dies."""
 
     def prepare() -> None:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)  # Python's handler would swallow it here
         _libc.prctl(PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0)
-        if os.getppid() != parent:  # it has died already: nobody will ask
+        if os.getppid() != parent:  # it has died already: no signal will come
             os._exit(0)
 
     return prepare
@@ -171,4 +171,4 @@ def _collect(pid: int) -> None:
     try:
         os.waitpid(pid, os.WNOHANG)
     except ChildProcessError:
-        return  # not ours yet: its own parent has still to be collected
+        return  # not ours yet: its own parent has still to be reaped

@@ -24,15 +24,15 @@ def find_package(name: str) -> Path:
 
 
 def located(text: str) -> Path:
-    """The path that a file names: as it is, or package://PACKAGE/PATH."""
+    """The path for a plain path or package://PACKAGE/PATH."""
     package, _, rest = text.removeprefix("package://").partition("/")
     return find_package(package) / rest if text.startswith("package://") else Path(text)
 
 
 def load_record(kind: type, name: str, folder: Path) -> Any:
-    """One of `kind`, a dataclass: NAME.yaml of a folder, or the file of that path.
+    """An instance of dataclass `kind` from NAME.yaml of a folder, or from the file of that path.
 
-    Fields have one of the types in RULES. RunError names file and key.
+    Fields have one of the types in RULES. A RunError names file and key.
     """
     path = Path(name) if name.endswith(".yaml") else folder / f"{name}.yaml"
     if not name.endswith(".yaml") and not path.exists():
@@ -57,7 +57,7 @@ def _is_number(value: object, least: float = -math.inf) -> bool:
 
 
 def _are(value: object, fits: Callable[[object], bool], count: int | None = None) -> bool:
-    """A list of so many (None: any number) that fit."""
+    """Whether it is a list of `count` (None: any number of) values that fit."""
     return isinstance(value, list) and count in (None, len(value)) and all(map(fits, value))
 
 
@@ -65,7 +65,7 @@ def _is_text(value: object) -> bool:
     return isinstance(value, str)
 
 
-Length = float  # of which 0 makes no sense
+Length = float  # positive: 0 makes no sense
 RULES: dict[str, tuple[str, Callable[[object], bool]]] = {
     "str": ("a text", _is_text),
     "float": ("a number, 0 or more", lambda value: _is_number(value, 0.0)),
@@ -79,14 +79,14 @@ RULES: dict[str, tuple[str, Callable[[object], bool]]] = {
 
 
 def read_keys(path: Path, expected: Sequence[str]) -> dict:
-    """A YAML file that has exactly these keys; RunError names file and key."""
+    """The content of a YAML file that has exactly these keys; a RunError names file and key."""
     try:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise RunError(f"{path}: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise RunError(f"{path}: not a text file") from error
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise RunError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") from error
     if not isinstance(values, dict) or set(values) != set(expected):
         given = set(values) if isinstance(values, dict) else set()

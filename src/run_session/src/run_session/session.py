@@ -1,4 +1,4 @@
-"""One run's processes, below one folder: all of them end with it."""
+"""One run's processes, with one folder for results: all of them end with it."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from run_session.launch import Launched
 from run_session.processes import Child, Family
 from run_session.status_line import StatusLine
 
-DRIVEN = (0, 1)  # exit codes of a program that drove
+DRIVEN = (0, 1)  # exit codes of a program whose drive took place
 
 
 class Session:
-    """A context; `out` is the folder for results."""
+    """A context manager; `out` is the folder for results."""
 
     def __init__(self, out: Path):
         self.out = out
@@ -33,18 +33,18 @@ class Session:
         try:
             self._at_end.close()
             self.family.stop()
-        except BaseException:  # the first Ctrl-C may come meanwhile; later ones disturb nothing
+        except BaseException:  # the first Ctrl-C may come here; later ones are ignored
             self.family.stop()
             raise
         finally:
             self.progress.end()
 
     def at_end(self, act: Callable[[], object]) -> None:
-        """Do this before the processes end."""
+        """Call `act` before the processes are ended."""
         self._at_end.callback(act)
 
     def launched(self, vehicle: str, driver: str = "", alone: bool = False) -> Launched:
-        """A ROS master and launch files of this run's own; logs go to OUT/log.
+        """This run's own ROS master and launch files; logs go to OUT/log.
 
         `alone`: in a network namespace of its own.
         """
@@ -52,12 +52,12 @@ class Session:
 
     def start_drive(self, command: list[str], folder: Path,
                     environment: Mapping[str, str] | None = None) -> DriveProcess:
-        """Start a program that drives and writes its report.json into this folder."""
+        """Start a program that makes a drive and writes its report.json into this folder."""
         return DriveProcess(self.family, command, folder, environment or os.environ)
 
 
 class DriveProcess:
-    """A drive in a process of its own: what it writes is all that is known of it."""
+    """A drive in a process of its own, known only by what it writes."""
 
     def __init__(self, family: Family, command: list[str], folder: Path,
                  environment: Mapping[str, str]):
@@ -69,12 +69,12 @@ class DriveProcess:
     def report(self, limit: float, what: str) -> dict:
         """Its report.json; RunError if it does not end within `limit`, s, wall, or did not drive.
 
-        Half a drive leaves no process, and no report: it must not be taken for one by --resume.
+        An interrupted drive leaves no process and no report, so that --resume repeats it.
         """
         try:
             self._child.process.wait(limit)
         except BaseException as early:
-            self._family.end(self._child)  # it reports what it has seen
+            self._family.end(self._child)  # it still writes a report
             self._report.unlink(missing_ok=True)
             if isinstance(early, subprocess.TimeoutExpired):
                 late = f"{what}: the drive did not end within {limit:.0f} s"

@@ -1,6 +1,6 @@
-"""Asks the running simulator through its services, without a node of its own.
+"""Calls the running simulator's services, without a node of its own.
 
-The master is the one of ROS_MASTER_URI; every failure is a RunError.
+The master is that of ROS_MASTER_URI; every failure raises RunError.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ FAILURES = (rospy.ServiceException, rospy.ROSException, OSError)
 
 
 def models() -> list[str]:
-    """Names of what stands in the world; empty while the simulator does not answer."""
+    """Names of the models in the world; empty while the simulator does not answer."""
     try:
         return list(_world().model_names)
     except RunError:
@@ -30,29 +30,29 @@ def models() -> list[str]:
 
 
 def simulated_time() -> float:
-    """s."""
+    """Simulated time, s."""
     return _world().sim_time
 
 
 def pause() -> None:
-    """Have time stand still."""
+    """Pause simulated time."""
     call("/gazebo/pause_physics", Empty)
 
 
 def unpause() -> None:
-    """Have time go on."""
+    """Let simulated time go on."""
     call("/gazebo/unpause_physics", Empty)
 
 
 def spawn_urdf(name: str, text: str, namespace: str, x: float, y: float) -> None:
-    """Spawn a model at a place (m)."""
+    """Spawn a model at x, y (m) in the world."""
     pose = Pose()
     pose.position.x, pose.position.y, pose.orientation.w = x, y, 1.0
     call("/gazebo/spawn_urdf_model", SpawnModel, name, text, namespace, pose, "world")
 
 
 def delete(name: str) -> None:
-    """Take a model out."""
+    """Delete a model."""
     call("/gazebo/delete_model", DeleteModel, name)
 
 
@@ -67,9 +67,9 @@ def _world() -> object:
 
 
 def call(name: str, kind: type, *arguments: object, wait: float | None = None) -> object:
-    """A service's answer; RunError if there is none, or if it is no.
+    """A service's response; RunError if there is none, or if it reports no success.
 
-    `wait`: s, wall, in which the service has to be there; None: it has to be there now.
+    `wait`: s, wall, to wait for the service; None: it has to be available now.
     """
     try:
         if wait is not None:
@@ -83,7 +83,7 @@ def call(name: str, kind: type, *arguments: object, wait: float | None = None) -
 
 
 def pose_message(place: Place) -> Pose:
-    """On the ground."""
+    """A pose on the ground."""
     pose = Pose()
     pose.position.x, pose.position.y = place[:2]
     pose.orientation.z, pose.orientation.w = math.sin(place[2] / 2), math.cos(place[2] / 2)
@@ -96,12 +96,12 @@ def place_of(pose: Pose) -> Place:
 
 
 def yaw_of(turn: Quaternion) -> float:
-    """rad, of what is upright, or nearly so."""
+    """Yaw in rad of an upright, or nearly upright, pose."""
     return math.atan2(2 * (turn.w * turn.z + turn.x * turn.y),
                       1 - 2 * (turn.y * turn.y + turn.z * turn.z))
 
 
 def put(name: str, place: Place, wait: float) -> None:
-    """Have a model stand at a place; `wait` as in `call`."""
+    """Set a model's pose in the world; `wait` as in `call`."""
     state = ModelState(model_name=name, pose=pose_message(place), reference_frame="world")
     call("/gazebo/set_model_state", SetModelState, state, wait=wait)

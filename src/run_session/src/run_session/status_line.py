@@ -1,4 +1,4 @@
-"""One line that shows how a run stands: rewritten on a terminal, one in ten seconds elsewhere."""
+"""A line that shows a run's progress: rewritten on a terminal, else one every ten seconds."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RATE_WINDOW = 5.0  # s, wall, over which the real-time factor is taken
 
 
 class StatusLine:
-    """Knows where it writes to and when a line is due; what it says comes from others."""
+    """Knows where to write and when a line is due; the text comes from the caller."""
 
     def __init__(self, stream: TextIO | None = None):
         self._stream = stream or sys.stdout
@@ -26,24 +26,24 @@ class StatusLine:
 
     @property
     def factor(self) -> float:
-        """Simulated over wall time, of the last seconds."""
+        """Real-time factor: simulated over wall time, of the last RATE_WINDOW."""
         (wall, simulated), (now, latest) = self._times[0], self._times[-1]
         return (latest - simulated) / (now - wall) if now > wall else 0.0
 
     def say(self, text: str) -> None:
-        """A line that stays."""
+        """Print a line that is not overwritten."""
         self.end()
         print(text, file=self._stream, flush=True)
 
     def status(self, text: str) -> None:
-        """What is being waited for; only a terminal shows it."""
+        """Show what is being waited for, on a terminal only."""
         if self._in_place:
             self._rewrite(text)
 
     def update(self, simulated: float, make_line: Callable[[], str], part: str = "") -> None:
-        """Another moment, s of simulated time, which begins anew with each part of the run.
+        """Take another simulated time (s), which begins again with each part of the run.
 
-        The line is made if one is due.
+        `make_line` is called if a line is due.
         """
         if part != self._part:
             self.end()

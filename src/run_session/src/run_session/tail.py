@@ -6,13 +6,13 @@ from pathlib import Path
 
 
 class Tail:
-    """Whole new lines of a file that grows."""
+    """Complete new lines of a file that grows."""
 
     def __init__(self, path: Path):
         self.path, self.read, self._rest = path, 0, b""  # bytes read
 
     def lines(self) -> list[str]:
-        """Those since the last call; none of a file that is not there."""
+        """The lines since the last call; none if there is no file."""
         try:
             with self.path.open("rb") as file:
                 file.seek(self.read)
@@ -24,5 +24,5 @@ class Tail:
         return [line.decode("utf-8", "replace") for line in lines]
 
     def skip(self) -> None:
-        """Leave out what is there."""
+        """Skip the lines that are there."""
         self.lines()

@@ -1,4 +1,4 @@
-"""One run at a time between looking for a free port and listening there."""
+"""A lock that one run at a time holds while it chooses a free port and starts listening there."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from typing import IO
 from run_session.failure import RunError
 
 LIMIT = 300.0  # s, wall; as long as a roscore may take
-PERIOD = 0.05  # s, wall, between two looks
+PERIOD = 0.05  # s, wall, between two attempts
 
 
 def take_turn(path: Path, limit: float = LIMIT) -> IO:
-    """The locked file: closing it ends the turn.
+    """Lock the file and return it: closing it releases the lock.
 
-    RunError if nobody lets go of it within `limit`, s, wall, or if it is another user's.
+    RunError if it is not released within `limit`, s, wall, or if it is another user's.
     """
     try:
         number = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)

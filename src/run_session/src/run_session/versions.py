@@ -1,4 +1,4 @@
-"""What a run was made with."""
+"""The versions of software that a run used."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ RENDERER_SAYS = "Cameras are drawn by"  # the simulator's log line
 
 
 def versions(root: Path, log: Iterable[str]) -> dict:
-    """What the run was made with; the renderer is what the simulator logged about it."""
+    """Versions by name; the renderer is as the simulator logged it."""
     found = {"python": platform.python_version(), "machine": platform.platform()}
     for package in PACKAGES:
         try:

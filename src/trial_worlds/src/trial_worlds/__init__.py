@@ -1,1 +1,1 @@
-"""Worlds that trials drive in: made, lit, mapped, and how near a robot is to them."""
+"""Worlds of the trials: generation, light, maps, and a robot's distance to obstacles."""

@@ -1,20 +1,20 @@
-"""How much air there is between the waffle and round things."""
+"""The distance between the waffle and circular obstacles."""
 
 from __future__ import annotations
 
 import numpy as np
 
-# Of the waffle's collision shapes about base_footprint, m: least x, greatest x, half the width.
+# The waffle's collision shapes in base_footprint, m: least x, greatest x, half width.
 PARTS = ((-0.197, 0.069, 0.133),   # body
          (-0.033, 0.033, 0.153),   # both wheels
          (0.061, 0.073, 0.066))    # camera
-CONTACT = 0.001  # m; the engine lets touching things sink into each other by less
+CONTACT = 0.001  # m; the engine lets touching bodies penetrate each other by less
 
 
 def clearance(pose: tuple[float, float, float], centres: np.ndarray, radius: float) -> float:
-    """m between the waffle at `pose` (x, y, yaw) and the nearest circle about `centres` (N, 2).
+    """Distance (m) from the waffle at `pose` (x, y, yaw) to the nearest circle at `centres` (N, 2).
 
-    Negative inside. inf without circles.
+    Negative if they overlap; inf without circles.
     """
     x, y, yaw = pose
     away = np.asarray(centres, float).reshape(-1, 2) - (x, y)

@@ -1,6 +1,6 @@
 """How hard a field is to cross: the five measures of the BARN benchmark, means over a path.
 
-Unit is the cell. They are taken where the robot's middle may be (`field.blocked`), as there.
+The unit is the cell. As there, they are measured where the robot's centre may be (`field.blocked`).
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ SIGHT = 3  # cells, of dispersion
 
 @dataclass(frozen=True)
 class Difficulty:
-    """Harder: the first four smaller or (dispersion) larger, tortuosity larger."""
+    """Harder means a larger dispersion and tortuosity, and smaller other measures."""
 
     closest_obstacle: float
-    visibility: float  # how far one sees, over eight directions
-    dispersion: float  # changes between open and closed, round a circle of sixteen directions
+    visibility: float  # mean view distance in eight directions
+    dispersion: float  # changes between open and closed around sixteen directions
     characteristic_dimension: float  # the narrowest of four widths
-    tortuosity: float  # the path's length by the distance of its ends
+    tortuosity: float  # the path's length divided by the distance between its ends
 
 
 def difficulty(closed: np.ndarray, path: np.ndarray) -> Difficulty:
-    """Of a path (N, 2), cells, over a field's `closed` cells, bool (rows, columns)."""
+    """The measures of a path (N, 2), cells, given the `closed` cells, bool (rows, columns)."""
     cells = [tuple(cell) for cell in path.tolist()]
     distance = likelihood_field.distances(closed.astype(np.uint8))
     steps = np.diff(path, axis=0)
@@ -46,7 +46,7 @@ def difficulty(closed: np.ndarray, path: np.ndarray) -> Difficulty:
 
 def _ray(closed: np.ndarray, cell: tuple[int, int], step: tuple[int, int], most: int
          ) -> tuple[int, bool]:
-    """Open steps after the cell, `most` at most, and whether a closed cell ended them."""
+    """Number of open cells along `step`, up to `most`, and whether a closed one follows."""
     row, column = cell
     for taken in range(most):
         row, column = row + step[0], column + step[1]
@@ -58,7 +58,7 @@ def _ray(closed: np.ndarray, cell: tuple[int, int], step: tuple[int, int], most:
 
 
 def _visibility(closed: np.ndarray, cell: tuple[int, int]) -> float:
-    """Open cells, its own among them, on the rays that end at an obstacle."""
+    """Mean number of open cells, including its own, on the rays that end at an obstacle."""
     rays = [_ray(closed, cell, step, sum(closed.shape)) for step in EIGHT]
     seen = [1 + steps for steps, ended in rays if ended]
     return float(np.mean(seen)) if seen else float(max(closed.shape))

@@ -1,5 +1,5 @@
-"""What is wrong with a world that was asked for."""
+"""The error for invalid worlds."""
 
 
 class WorldError(Exception):
-    """A file that is no world, or a world without what was asked of it; one line."""
+    """A file is not a world, or the world lacks what is needed; one line."""

@@ -1,6 +1,6 @@
-"""How near a robot is to touching something: rays from the sides of its collision shapes.
+"""A robot's distance to obstacles, by rays from the sides of its collision shapes.
 
-The world is a second one, from the same file, so that asking costs the simulator nothing.
+The rays are cast in a second world, from the same file, so that they cost the simulator nothing.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from bullet_sim.pose import Pose
 from bullet_sim.world import World
 from trial_worlds.errors import WorldError
 
-SPACING = 0.01  # m, from ray to ray along a side; no table leg slips between two
-INSIDE = 0.02   # m behind the surface, where rays begin: contacts give way a little
+SPACING = 0.01  # m, from ray to ray along a side; no table leg fits between two
+INSIDE = 0.02   # m behind the surface, where rays begin: bodies in contact penetrate a little
 REACH = 0.5     # m in front of it
 FAN = 0.12      # rad, from ray to ray about a corner
 ROUND = 24      # corners of a circle
@@ -28,18 +28,18 @@ ROUND = 24      # corners of a circle
 
 @dataclass(frozen=True)
 class Gap:
-    """The smallest way from the robot to something else; REACH where nothing is that near."""
+    """The smallest distance from the robot to another object; REACH if nothing is that near."""
 
     width: float  # m
-    own: str  # the collision of the robot
-    place: tuple[float, float]  # m, in the world, where the other thing is
+    own: str  # the robot's collision element
+    place: tuple[float, float]  # m, in the world, of the other object
 
 
 class Feelers:
-    """Rays about the shapes of a robot that stands upright on the ground."""
+    """Rays around the shapes of a robot that stands upright on the ground."""
 
     def __init__(self, world: World, urdf: str):
-        """Raises WorldError for text that is no robot."""
+        """Raises WorldError if the text describes no robot."""
         self._world = world
         starts, ways, self._names = [], [], []
         for name, collision, link in _collisions(urdf):
@@ -51,7 +51,7 @@ class Feelers:
         self._starts, self._ways = np.concatenate(starts), np.concatenate(ways)
 
     def gap(self, pose: np.ndarray) -> Gap:
-        """Of a robot at this pose (3,) in the world."""
+        """The gap of a robot at this pose (3,) in the world."""
         x, y, yaw = pose
         turn = np.array([[np.cos(yaw), np.sin(yaw), 0], [-np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
         starts = self._starts @ turn + (x, y, 0.0)
@@ -64,7 +64,7 @@ class Feelers:
 
 
 def _collisions(urdf: str) -> list[tuple[str, Collision, Pose]]:
-    """Names, collisions and their links' poses in the robot, of shapes that have sides."""
+    """Name, collision and link pose in the robot, of each shape that has sides."""
     resources = Resources.from_environment(os.environ, find_package=rospkg.RosPack().get_path)
     try:
         model = load_model(urdf, resources)
@@ -83,7 +83,7 @@ def _sides(collision: Collision, link: Pose) -> tuple[np.ndarray, np.ndarray, fl
     points = np.array([pose.transform(point) for point in _corners(collision.geometry)])
     corners = cv2.convexHull(points[:, :2].astype(np.float32))[:, 0].astype(float)
     if np.cross(corners[1] - corners[0], corners[2] - corners[1]) < 0:
-        corners = corners[::-1]  # anticlockwise
+        corners = corners[::-1]  # counter-clockwise
     sides = np.roll(corners, -1, axis=0) - corners
     long = np.linalg.norm(sides, axis=1)
     angles = np.arctan2(-sides[:, 0], sides[:, 1])  # of the outward normals
@@ -101,7 +101,7 @@ def _sides(collision: Collision, link: Pose) -> tuple[np.ndarray, np.ndarray, fl
 
 
 def _corners(geometry: Geometry) -> np.ndarray:
-    """Points (N, 3), m, whose hull the shape is or nearly is."""
+    """Points (N, 3), m, whose convex hull is the shape, at least nearly."""
     signs = np.array(np.meshgrid(*3 * [(-1.0, 1.0)])).reshape(3, -1).T
     around = np.linspace(0.0, 2 * np.pi, ROUND, endpoint=False)
     circle = np.stack((np.cos(around), np.sin(around), np.zeros(ROUND)), axis=1)

@@ -1,4 +1,4 @@
-"""Obstacle fields by a cellular automaton, and where a robot of some width fits through.
+"""Obstacle fields by a cellular automaton, and where a robot of given width fits through.
 
 D. Perille, A. Truong, X. Xiao, P. Stone, "Benchmarking Metric Ground Navigation" (2020): the BARN
 benchmark. A field is bool (rows, columns), True where a cylinder stands; it is crossed along its
@@ -12,13 +12,13 @@ import math
 
 import numpy as np
 
-FILLED, EMPTIED = 5, 1  # so many of the eight neighbours or more fill a cell; or fewer empty it
+FILLED, EMPTIED = 5, 1  # least filled neighbours, of eight, that fill a cell; most that empty it
 STRAIGHT_AND_DIAGONAL = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]
 
 
 def grow(random: np.random.Generator, rows: int, columns: int, fill: float, smoothing: int
          ) -> np.ndarray:
-    """A field: each cell filled with the chance `fill`, then smoothed so many times."""
+    """A field: each cell filled with probability `fill`, then smoothed `smoothing` times."""
     field = random.random((rows, columns)) < fill
     field[[0, -1]] = True
     for _ in range(smoothing):
@@ -28,7 +28,7 @@ def grow(random: np.random.Generator, rows: int, columns: int, fill: float, smoo
 
 
 def neighbours(field: np.ndarray) -> np.ndarray:
-    """How many of the eight neighbours of each cell are filled; those beyond the walls are."""
+    """Number of filled neighbours (of eight) of each cell; those beyond the walls are filled."""
     framed = np.pad(np.pad(field, ((0, 0), (1, 1))), ((1, 1), (0, 0)), constant_values=True)
     rows, columns = field.shape
     return sum(framed[1 + i:1 + i + rows, 1 + j:1 + j + columns].astype(int)
@@ -36,7 +36,7 @@ def neighbours(field: np.ndarray) -> np.ndarray:
 
 
 def blocked(field: np.ndarray, reach: int) -> np.ndarray:
-    """Where the robot's middle cannot be: a cylinder within `reach` cells, in a square."""
+    """Where the robot's centre cannot be: a cylinder is within a square of `reach` cells around."""
     framed = np.pad(field, reach)
     rows, columns = field.shape
     shifts = range(2 * reach + 1)
@@ -45,9 +45,9 @@ def blocked(field: np.ndarray, reach: int) -> np.ndarray:
 
 def shortest_path(closed: np.ndarray, start: tuple[int, int], goal: tuple[int, int]
                   ) -> np.ndarray | None:
-    """Cells (N, 2) of the shortest way, straight and diagonal, over those that are not closed.
+    """Cells (N, 2) of the shortest path, straight and diagonal, over those that are not closed.
 
-    Not between two closed cells that touch at a corner. None where there is no way.
+    It does not pass between two closed cells that touch at a corner. None if there is no path.
     """
     ways, came, front = {start: 0.0}, {}, [(0.0, start)]
     while front:

@@ -1,4 +1,4 @@
-"""The house as it is: its walls, where a robot has room, and the shortest ways through it."""
+"""The true house: its walls, where a robot has room, and shortest paths through it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from trial_worlds.errors import WorldError
 from trial_worlds.feelers import Feelers
 from trial_worlds.true_map import open_walls, reached, true_map
 
-MOST_DRAWS = 10_000  # of a place for one goal
+MOST_DRAWS = 10_000  # attempts to draw one goal
 
 
 class Ground:
@@ -24,8 +24,8 @@ class Ground:
 
     def __init__(self, world: Path, start: tuple[float, float, float], laser_height: float,
                  passable: float, goal_clearance: float, goal_distance: float):
-        """Lengths in m, `passable` and `goal_clearance` from a wall, `goal_distance` from goal to
-        goal, all at least; WorldError for a file that is no world with walls about `start`.
+        """Least distances in m: `passable` and `goal_clearance` from a wall, `goal_distance` from
+        goal to goal. WorldError if the file is not a world with walls around `start`.
         """
         self._start = start
         self._goal_clearance, self._goal_distance = goal_clearance, goal_distance
@@ -42,18 +42,18 @@ class Ground:
                               self.walls.resolution, self.walls.origin)
 
     def feelers(self, urdf: str) -> Feelers:
-        """Of the robot that this text describes, in this house."""
+        """Feelers of the robot that this URDF describes, in this house."""
         return Feelers(self._world, urdf)
 
     def has_room(self, point: np.ndarray) -> bool:
-        """Can the robot get to this point (x, y) from its start?"""
+        """Whether the robot can get to this point (x, y) from its start."""
         cell = self.walls.cells_of(np.asarray(point, float))
         return bool(self.walls.contains(cell) and self._within[tuple(cell)])
 
     def draw_goals(self, count: int, seed: int) -> np.ndarray:
-        """Poses (count, 3), evenly over where there is room; WorldError where there is too little.
+        """Random poses (count, 3), uniform over the free space; WorldError if there is too little.
 
-        The first goals of a longer list are those of a shorter one.
+        A longer list begins with the goals of a shorter one.
         """
         generator = np.random.default_rng(seed)
         cells = np.argwhere(self._within & (self._clearance >= self._goal_clearance))
@@ -65,7 +65,7 @@ class Ground:
         return np.array(goals).reshape(-1, 3)
 
     def shortest_way(self, start: np.ndarray, goal: np.ndarray) -> float:
-        """m, from pose to pose, without touching a wall; inf where there is no way."""
+        """Length (m) of the shortest path between two poses without touching a wall; inf: none."""
         path = navfn.plan(self._costs, np.asarray(start, float), np.asarray(goal, float),
                           settings=navfn.NavfnSettings(allow_unknown=True, default_tolerance=0.0))
         if path is None:

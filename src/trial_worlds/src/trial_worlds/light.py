@@ -1,8 +1,8 @@
-"""A world in brighter or dimmer light, as a world file and models of its own.
+"""A copy of a world, with its models, in brighter or dimmer light.
 
-The renderer, like Gazebo's, cuts the light on a surface off at 1 before it multiplies the texture
-by it, and our worlds' light is at that bound: more of it would change nothing on the road. So
-brighter textures are what a brighter light would show, up to the white at which a camera ends.
+The renderer, like Gazebo's, clips the light on a surface at 1 before multiplying the texture by it,
+and our worlds' light is at that bound: more light would change nothing on the road. So a brighter
+light is simulated by brighter textures, up to white, where a camera saturates.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def write_lit_world(world: Path, models: Path, factor: float, folder: Path) -> P
     """Write FOLDER/<the world's name> with its light times `factor`; returns that file.
 
     `models` is where the world's own models are: copies of them with brighter textures go to
-    FOLDER/models if the factor is above 1. Raises WorldError for a file that is no world.
+    FOLDER/models if the factor is above 1. Raises WorldError if the file is not a world.
     """
     folder.mkdir(parents=True, exist_ok=True)
     try:
@@ -45,7 +45,7 @@ def write_lit_world(world: Path, models: Path, factor: float, folder: Path) -> P
 
 
 def scale_light(root: Element, sun: Element, factor: float) -> None:
-    """Multiply the world's ambient light and its sun's, which takes the place of its include."""
+    """Scale the world's ambient light and that of `sun`, which replaces the included sun."""
     world = root.find("world")
     for ambient in world.findall("scene/ambient"):
         _scale(ambient, factor)
@@ -57,7 +57,7 @@ def scale_light(root: Element, sun: Element, factor: float) -> None:
 
 
 def _scale(colour: Element, factor: float) -> None:
-    """Red, green and blue; a fourth number, opacity, stays."""
+    """Scale red, green and blue; a fourth number, opacity, is kept."""
     values = [float(word) for word in colour.text.split()]
     scaled = [value * factor for value in values[:3]] + values[3:]
     colour.text = " ".join(f"{value:.6g}" for value in scaled)

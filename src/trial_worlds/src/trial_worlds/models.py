@@ -1,4 +1,4 @@
-"""Yards and persons as SDF, for the simulator and for whoever wants to look at them."""
+"""Yards and people as SDF, for the simulator and as worlds to look at."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ PERSON_TOPIC = "person/cmd_vel"
 
 
 def yard_model(yard: Yard) -> str:
-    """One static model of all the yard's cylinders."""
+    """A static model of all the yard's cylinders."""
     shape = f"<cylinder><radius>{RADIUS:.5f}</radius><length>{HEIGHT}</length></cylinder>"
     return _static("yard", [(f"{x:.5f} {y:.5f} {HEIGHT / 2} 0 0 0", shape)
                             for x, y in yard.cylinders])
 
 
 def room_model() -> str:
-    """The four walls within which a person crosses."""
+    """The four walls of the room in which a person crosses."""
     (left, right), (low, high) = ROOM
     middle_x, middle_y, height = (left + right) / 2, (low + high) / 2, HEIGHT / 2
     along = f"<box><size>{right - left:g} {THICKNESS} {HEIGHT}</size></box>"
@@ -29,7 +29,7 @@ def room_model() -> str:
 
 
 def person_model() -> str:
-    """A cylinder that is walked by commands on PERSON_TOPIC; it floats, so nothing slows it."""
+    """A cylinder that is moved by commands on PERSON_TOPIC; it floats, so nothing slows it."""
     shape = (f"<geometry><cylinder><radius>{PERSON_RADIUS}</radius>"
              f"<length>{PERSON_HEIGHT}</length></cylinder></geometry>")
     return (
@@ -45,7 +45,7 @@ def person_model() -> str:
 
 
 def world(model: str) -> str:
-    """A world file of one model's SDF on the ground."""
+    """A world file with one model, given as SDF, on the ground."""
     inner = model.removeprefix('<sdf version="1.6">').removesuffix("</sdf>")
     return ('<?xml version="1.0"?>\n<sdf version="1.6"><world name="default">\n'
             "<scene><shadows>0</shadows></scene>\n"
@@ -55,7 +55,7 @@ def world(model: str) -> str:
 
 
 def _static(name: str, shapes: list[tuple[str, str]]) -> str:
-    """A model of shapes, each with its pose."""
+    """A static model of shapes (pose, geometry)."""
     parts = "".join(
         f'<{kind} name="{number}"><pose>{pose}</pose><geometry>{shape}</geometry></{kind}>\n'
         for number, (pose, shape) in enumerate(shapes) for kind in ("collision", "visual"))

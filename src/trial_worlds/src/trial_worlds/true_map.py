@@ -16,16 +16,16 @@ from bullet_sim.world import World
 from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.rays import cast
 
-LINES_A_CELL = 4  # rays beside each other in one cell, so that no corner slips between two
-BEYOND = 1e-4     # m behind a surface: which cell it is in, where it lies on a border; next ray
-MOST_SURFACES = 1000  # behind each other on one line
+LINES_A_CELL = 4  # rays side by side in one cell, so that none misses a corner
+BEYOND = 1e-4     # m behind a surface, to decide its cell at a border, and to start the next ray
+MOST_SURFACES = 1000  # one behind the other on a line
 
 
 def open_walls(path: Path | str) -> World:
-    """The world of a file without its actors, at its beginning; close it after use.
+    """The world of a file without its actors, in its initial state; close it after use.
 
     Models are sought in the folder `models` beside the file's own folder, and in Gazebo's usual
-    places. Raises bullet_sim.errors.SimulationError for a file that is no world.
+    places. Raises bullet_sim.errors.SimulationError if the file is not a world.
     """
     path = Path(path)
     resources = Resources.from_environment(
@@ -40,11 +40,11 @@ def true_map(world: World, height: float, inside: Sequence[tuple[float, float]],
              resolution: float = 0.05, reach: float = 30.0) -> OccupancyGrid:
     """Walls at `height`, m, in the world's frame, within `reach` m of its origin on each side.
 
-    A cell is FREE where one can get to from a point of `inside` (x, y) without crossing a collision
-    surface; OCCUPIED where a surface runs through it, as rays along x and y meet it from outside,
-    that such a free cell is beside; else UNKNOWN, as the inside of walls is. The grid ends one cell
-    beyond the outermost surface. Raises ValueError where there is none, or where a point of
-    `inside` is in a wall or outside of all.
+    A cell is FREE if it can be reached from a point of `inside` (x, y) without crossing a collision
+    surface; OCCUPIED if it is next to a free cell and contains a surface, as hit from outside by
+    rays along x and y; else UNKNOWN, such as the inside of walls. The grid ends one cell beyond the
+    outermost surface. Raises ValueError if there is no surface, or if a point of `inside` is in a
+    wall or outside of all walls.
     """
     count = round(reach / resolution)
     points = np.concatenate([_surfaces(world, axis, height, count * resolution, resolution)
@@ -68,9 +68,9 @@ def true_map(world: World, height: float, inside: Sequence[tuple[float, float]],
 
 
 def reached(closed: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Bool (rows, columns): what hangs together with `starts` (N, 2), row and column.
+    """Bool (rows, columns): cells connected to one of `starts` (N, 2), row and column.
 
-    From cell to cell over a common side, never into one that is `closed`, bool (rows, columns).
+    Cells connect over a common side, never into one that is `closed`, bool (rows, columns).
     """
     parts, _ = ndimage.label(~closed)
     inside = starts[((starts >= 0) & (starts < closed.shape)).all(axis=1)]
@@ -80,7 +80,7 @@ def reached(closed: np.ndarray, starts: np.ndarray) -> np.ndarray:
 
 def visible_walls(grid: OccupancyGrid, poses: np.ndarray, angles: np.ndarray,
                   range_max: float) -> np.ndarray:
-    """Which OCCUPIED cells some beam ends in, bool (rows, columns).
+    """The OCCUPIED cells in which a beam ends, bool (rows, columns).
 
     The laser was at `poses` (N, 3), with beams at `angles` (M,), rad, from each heading.
     """
@@ -100,7 +100,7 @@ def visible_walls(grid: OccupancyGrid, poses: np.ndarray, angles: np.ndarray,
 
 def _surfaces(world: World, axis: int, height: float, reach: float,
               resolution: float) -> np.ndarray:
-    """Points (N, 2), m, just behind the surfaces that rays along an axis meet, both ways."""
+    """Points (N, 2), m, just behind the surfaces hit by rays along an axis, in both directions."""
     spacing = resolution / LINES_A_CELL
     across = np.arange(-reach + spacing / 2, reach, spacing)
     found = []
@@ -112,7 +112,7 @@ def _surfaces(world: World, axis: int, height: float, reach: float,
             ends[:, axis] = sign * reach
             fraction = world.cast_rays(starts, ends).fraction[:, None]
             ways = fraction * (ends - starts)
-            # A ray that begins inside a sphere meets it again at once, all the way through.
+            # A ray that begins inside a sphere hits it again immediately, all the way through.
             again = np.abs(ways[:, axis]) < BEYOND
             ways[:, axis] += sign * np.where(again, spacing, BEYOND)
             starts, again = (starts + ways)[fraction[:, 0] < 1], again[fraction[:, 0] < 1]

@@ -1,9 +1,9 @@
-"""A yard: a walled obstacle field in the waffle's size, with room for start and goal beside it.
+"""A yard: a walled obstacle field scaled to the waffle, with room for start and goal.
 
 The BARN benchmark's fields are 30 x 30 cells of 0.15 m for the Jackal, which is 0.430 m wide and
 turns within 0.333 m. The waffle is 0.306 m wide and turns within 0.237 m about its axle: 0.71 times
-both. So cells and cylinders here are 0.71 times as large, and a yard is to the waffle what that
-field is to the Jackal: there is always a way on which a square of 5 cells about the robot is free.
+both. So cells and cylinders here are 0.71 times as large, and a yard is as hard for the waffle as
+that field for the Jackal: there is always a path with a free square of 5 cells around the robot.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ CELL = 0.15 * SCALE     # m
 RADIUS = CELL / 2       # m, of a cylinder
 SIZE, APRON = 30, 10    # cells: the field's sides; before and behind it
 MARGIN = 5              # cells from the yard's ends to start and goal
-FREE = 2                # cells to each side of the robot's that are free on the way
+FREE = 2                # free cells to each side of the robot's cell along the path
 FILLS, SMOOTHINGS = (0.15, 0.20, 0.25, 0.30), (2, 3, 4)
 KINDS = tuple(itertools.product(FILLS, SMOOTHINGS))
-START_SIDE, START_TURN = 0.1, math.radians(10)  # m, rad: start poses differ by as much at most
+START_SIDE, START_TURN = 0.1, math.radians(10)  # m, rad: largest offsets of start poses
 
 
 @dataclass(frozen=True)
 class Yard:
-    """Cells are (row, column); rows go along y, columns along x, the origin is mid-field's edge."""
+    """Cells are (row, column), along y and x; the origin is mid-edge at the field's entrance."""
 
     seed: int
     fill: float
     smoothing: int
     cells: np.ndarray  # bool (rows, columns): where cylinders stand
-    path: np.ndarray   # (N, 2), cells: the shortest way with the room that is promised
+    path: np.ndarray   # (N, 2), cells: the shortest path with FREE cells to each side
     difficulty: Difficulty
 
     @property
@@ -46,7 +46,7 @@ class Yard:
 
     @property
     def path_length(self) -> float:
-        """m, of the shortest way."""
+        """Length of the shortest path, m."""
         return float(np.hypot(*np.diff(self.path, axis=0).T).sum()) * CELL
 
     @property
@@ -55,7 +55,7 @@ class Yard:
         return *places(self.path[-1:])[0].tolist(), 0.0
 
     def start(self, repeat: int) -> tuple[float, float, float]:
-        """x, y, yaw; m, rad: a little beside the place and heading of the first in each repeat."""
+        """x, y, yaw; m, rad; in repeats other than 0 with a small random offset."""
         x, y = places(self.path[:1])[0].tolist()
         random = np.random.default_rng((self.seed, repeat))
         side, turn = random.uniform(-START_SIDE, START_SIDE), random.uniform(-1, 1) * START_TURN
@@ -63,7 +63,7 @@ class Yard:
 
 
 def draw_yard(seed: int) -> Yard:
-    """The seed's; fields that cannot be crossed are drawn again, as in the benchmark."""
+    """The seed's yard; fields that cannot be crossed are drawn again, as in the benchmark."""
     fill, smoothing = KINDS[seed % len(KINDS)]
     random = np.random.default_rng(seed)
     while True:
@@ -80,13 +80,13 @@ def draw_yard(seed: int) -> Yard:
 
 
 def places(cells: np.ndarray) -> np.ndarray:
-    """Middles (N, 2), x and y, m, of cells (N, 2)."""
+    """Centres (N, 2), x and y, m, of cells (N, 2)."""
     middle = np.array([SIZE / 2, APRON])
     return ((np.asarray(cells) + 0.5 - middle) * CELL)[:, ::-1]
 
 
 def _walled(field: np.ndarray) -> np.ndarray:
-    """The field between two aprons, all round in a wall of cylinders."""
+    """The field with an apron at either end, enclosed by a wall of cylinders."""
     cells = np.pad(field, ((0, 0), (APRON, APRON)))
     cells[[0, -1]] = True
     cells[:, [0, -1]] = True

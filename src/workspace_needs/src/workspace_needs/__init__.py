@@ -1,1 +1,1 @@
-"""What a catkin workspace asks for, and where it comes from: ours, Debian, or nobody."""
+"""The dependencies of a catkin workspace, and who provides them: we, Debian, or nobody."""

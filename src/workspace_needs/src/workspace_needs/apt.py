@@ -1,4 +1,4 @@
-"""Runs apt-get, and says in one line what is wrong where it fails."""
+"""Runs apt-get, and reports a failure in one line."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ NO_NETWORK = re.compile(
 STALE = re.compile(r"Unable to locate package (\S+)|404 +Not Found|has no installation candidate")
 OPTIONS = ("-y", "-qq", "--no-install-recommends", "-o", "Dpkg::Use-Pty=0",
            "-o", "DPkg::Lock::Timeout=600", "-o", "Acquire::Retries=1")
-KEPT = ("http_proxy", "https_proxy", "no_proxy")  # for sudo, which drops what it does not know
+KEPT = ("http_proxy", "https_proxy", "no_proxy")  # environment variables that sudo must keep
 
 
 class AptError(RuntimeError):
-    """Nothing or not all was installed; the message is one line."""
+    """Not all packages were installed; the message is one line."""
 
 
 def as_root(command: list[str]) -> list[str]:
-    """The command with sudo where it is needed; AptError where there is none."""
+    """The command, with sudo if needed; AptError if there is no sudo."""
     settings = ["DEBIAN_FRONTEND=noninteractive", "LC_ALL=C",
                 *(f"{name}={os.environ[name]}" for name in KEPT if name in os.environ)]
     if os.geteuid() == 0:
@@ -35,9 +35,9 @@ def as_root(command: list[str]) -> list[str]:
 
 
 def install(packages: list[str]) -> None:
-    """Installs Debian packages without recommended ones; AptError says why that was not possible.
+    """Installs Debian packages without recommended ones; AptError says why that failed.
 
-    apt's lists are fetched anew where it does not know a package or cannot find its file.
+    Updates apt's lists if apt does not know a package or cannot find its file.
     """
     code, said = _run(as_root(["apt-get", "install", *OPTIONS, *packages]))
     if code and STALE.search(said):
@@ -50,12 +50,12 @@ def install(packages: list[str]) -> None:
 
 
 def _run(command: list[str]) -> tuple[int, str]:
-    """Exit code and output, which the terminal gets meanwhile."""
+    """Runs a command; returns exit code and output, which is also shown meanwhile."""
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           errors="replace") as process:
         lines = []
         for line in process.stdout:
-            if not line.startswith(("E: ", "W: ")):  # said in the one line at the end
+            if not line.startswith(("E: ", "W: ")):  # these are reported in the one line at the end
                 sys.stdout.write(line)
                 sys.stdout.flush()
             lines.append(line)
@@ -63,7 +63,7 @@ def _run(command: list[str]) -> tuple[int, str]:
 
 
 def _why(*outputs: str) -> str:
-    """The reason in words, of what apt said; the first that is known counts."""
+    """The first known reason in apt's output, in words."""
     for said in outputs:
         if NO_NETWORK.search(said) and not re.search(r"404 +Not Found", said):
             return "no network: apt cannot fetch the packages; connect and run this again"

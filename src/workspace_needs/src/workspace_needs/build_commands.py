@@ -1,9 +1,9 @@
-"""`catkin_make`, `catkin_make_isolated` and `catkin build` as pages type them.
+"""`catkin_make`, `catkin_make_isolated` and `catkin build`, as tutorials type them.
 
-A package that asks for what nobody has must not stop the others: catkin_make configures all
-packages in one run of CMake, which ends at the first that cannot find a component, and the other
-two fail at that package. So a line says what is left out, and the tool gets its name in the tool's
-own way: CATKIN_BLACKLIST_PACKAGES, --ignore-pkg, the skiplist.
+A package with a dependency that nobody provides must not stop the others: catkin_make configures
+all packages in one run of CMake, which ends at the first missing component, and the other two fail
+at that package. So such packages are left out, with a printed line, by each tool's own means:
+CATKIN_BLACKLIST_PACKAGES, --ignore-pkg, the skiplist.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from typing import NoReturn
 from workspace_needs.verdicts import judge
 from workspace_needs.workspace import WorkspaceError
 
-FOLDER = "/usr/bin"  # of Debian's own
-CHOSEN = ("--pkg", "--from-pkg")  # catkin_make_isolated takes no --ignore-pkg beside them
+FOLDER = "/usr/bin"  # where Debian's own commands are
+CHOSEN = ("--pkg", "--from-pkg")  # catkin_make_isolated takes no --ignore-pkg with these
 
 
 def catkin_make() -> NoReturn:
-    """Becomes Debian's catkin_make."""
+    """Replaces this process by Debian's catkin_make."""
     _become("catkin_make", catkin_make_words(sys.argv[1:]))
 
 
 def catkin_make_words(args: list[str]) -> list[str]:
-    """`args`, and what leaves out packages, unless they choose packages themselves."""
+    """`args`, with options that leave out packages, unless `args` choose packages themselves."""
     if any("LIST_PACKAGES" in word for word in args):
         return args
     names = left_out("catkin_make", args, _source(args))
@@ -36,12 +36,12 @@ def catkin_make_words(args: list[str]) -> list[str]:
 
 
 def catkin_make_isolated() -> NoReturn:
-    """Becomes Debian's catkin_make_isolated."""
+    """Replaces this process by Debian's catkin_make_isolated."""
     _become("catkin_make_isolated", catkin_make_isolated_words(sys.argv[1:]))
 
 
 def catkin_make_isolated_words(args: list[str]) -> list[str]:
-    """`args`, and what leaves out packages, unless they choose packages themselves."""
+    """`args`, with options that leave out packages, unless `args` choose packages themselves."""
     if {word.partition("=")[0] for word in args} & set(CHOSEN):
         return args
     names = left_out("catkin_make_isolated", args, _source(args))
@@ -49,12 +49,12 @@ def catkin_make_isolated_words(args: list[str]) -> list[str]:
         return args
     option = "--ignore-pkg"
     place = args.index(option) + 1 if option in args else 0
-    # Not behind --cmake-args, which takes all that follows.
+    # Not after --cmake-args, which takes all that follows.
     return [*args[:place], *([] if place else [option]), *names, *args[place:]]
 
 
 def catkin() -> int:
-    """catkin_tools, from Debian or from PyPI; its `build` leaves out packages as the others do."""
+    """Runs catkin_tools, from Debian or PyPI; its `build` leaves out packages as the others do."""
     args = sys.argv[1:]
     try:
         from catkin_tools.commands.catkin import main
@@ -66,7 +66,7 @@ def catkin() -> int:
         return 127
 
     class BuildContext(cli.Context):
-        """The settings of one build. What is left out of it is not saved with --save-config."""
+        """The settings of one build; left-out packages are not saved by --save-config."""
 
         names: list[str] = []
 
@@ -91,8 +91,8 @@ def catkin() -> int:
 def left_out(tool: str, args: list[str], source: Path) -> list[str]:
     """Names of the packages below `source` that cannot be built; prints a line for each.
 
-    Ends the program with one line where no tool would build anything. A folder that is not there
-    is the tool's to complain about.
+    Ends the program with one line if no tool would build anything. A missing folder is left for the
+    tool to report.
     """
     if {"-h", "--help"} & set(args) or not source.is_dir():
         return []
@@ -117,7 +117,7 @@ def _become(tool: str, args: list[str]) -> NoReturn:
 
 
 def _become_another_catkin(args: list[str]) -> None:
-    """One that this Python cannot import, of pipx or conda; returns where there is none."""
+    """Runs a catkin that this Python cannot import, of pipx or conda; returns if there is none."""
     own = Path(sys.argv[0]).resolve()
     for folder in os.get_exec_path():
         found = shutil.which("catkin", path=folder)
@@ -130,7 +130,7 @@ def _head(path: str) -> str:
 
 
 def _source(args: list[str]) -> Path:
-    """The src/ of the workspace that -C names, or in which it is typed; or what --source says."""
+    """The workspace's source folder, by -C (else the current directory) and --source (else src)."""
     values = dict(itertools.pairwise(args))
     base = Path(values.get("-C") or values.get("--directory") or ".")
     return base / (values.get("--source") or values.get("--source-space") or "src")

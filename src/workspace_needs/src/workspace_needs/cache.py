@@ -1,6 +1,6 @@
-"""rosdep's cache, made from our files whenever those are newer: nobody types `rosdep update`.
+"""rosdep's cache, remade whenever our files change, so that `rosdep update` is not needed.
 
-It has a folder of its own in the user's ~/.ros, so that another ROS on the machine keeps its own.
+It is in a separate folder in the user's ~/.ros, so that it does not affect another ROS's cache.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ STAMP = "made-from"
 
 
 def enter() -> Path:
-    """Points rosdep to our files and to the cache, which is made if need be; returns its folder."""
+    """Points rosdep to our files and the cache, which is made if needed; returns its folder."""
     files = package_folder() / "rosdep"
     home = _home()
     stamp = _stamp(files)
@@ -30,7 +30,7 @@ def enter() -> Path:
 
 
 def _home() -> Path:
-    """~/.ros/rosdep-courses, or a folder in /tmp where that cannot be written."""
+    """~/.ros/rosdep-courses, or a folder in /tmp if that is not writable."""
     parent = Path(os.environ.get("ROS_HOME") or Path.home() / ".ros")
     try:
         parent.mkdir(parents=True, exist_ok=True)
@@ -42,7 +42,7 @@ def _home() -> Path:
 
 
 def _stamp(files: Path) -> str:
-    """Which files, and their content: a copy elsewhere or a change makes the cache anew."""
+    """A digest of the files' path and content: a copy elsewhere or a change renews the cache."""
     digest = hashlib.sha256(str(files).encode())
     for path in sorted(files.iterdir()):
         digest.update(path.name.encode() + path.read_bytes())
@@ -56,7 +56,7 @@ def _point_to(files: Path, home: Path) -> None:
 
 
 def _make(files: Path, home: Path, stamp: str) -> None:
-    """Fills a new folder by rosdep's own update, then puts it in place."""
+    """Fills a new folder by rosdep's own update, then moves it into place."""
     made = Path(tempfile.mkdtemp(prefix=f"{home.name}.", dir=home.parent))
     try:
         sources = made / "sources.list.d"
@@ -75,7 +75,7 @@ def _make(files: Path, home: Path, stamp: str) -> None:
 
 
 def _update() -> None:
-    """`rosdep update`, which parses YAML in pure Python unless it gets the quick loader."""
+    """Runs `rosdep update` with the fast YAML loader, which rosdep does not use by itself."""
     import yaml
     from rosdep2 import sources_list
 

@@ -1,4 +1,4 @@
-"""The command line of `make deps`: installs what Debian has, says what nobody has."""
+"""The command line of `make deps`: installs what Debian has, reports what nobody has."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from workspace_needs.workspace import WorkspaceError, source_folder
 
 
 def main(argv: list[str] | None = None) -> int:
-    """0: all that can be had is installed; 1: apt could not; 2: there is no such workspace."""
+    """0: all that is available is installed; 1: apt failed; 2: there is no such workspace."""
     parser = argparse.ArgumentParser(
         prog="deps", description="Installs the Debian packages that a catkin workspace asks for.")
     parser.add_argument("workspace", type=Path, help="its folder, such as ~/catkin_ws")
@@ -49,7 +49,7 @@ def _install(missing: list[str], packages: int, simulate: bool) -> None:
 
 
 def not_to_be_had(verdicts: Iterable[Verdict]) -> list[str]:
-    """A line a package and thing: what will not be built, and what will be missing at run time."""
+    """One line for each package that will not be built, or dependency missing at run time."""
     lines = []
     for verdict in verdicts:
         lines += [f"{verdict.name} cannot be built: {key}: {why}"

@@ -1,4 +1,4 @@
-"""Debian's own lists of packages and files, read for what they hold of ROS.
+"""Finds ROS packages in Debian's own lists of packages and files.
 
 A mirror has them per release: dists/RELEASE/main/Contents-*.gz and binary-amd64/Packages.xz.
 """
@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 FIELDS = ("Package", "Source", "Section", "Depends", "Provides")
-# The folder that a ROS package has below each of the system's: share, lib, include ...
+# Folders of a ROS package, below the system's share, lib, include ...
 ROOM = re.compile(
     r"usr/(?:lib/python3/dist-packages|(?:share|lib)(?:/x86_64-linux-gnu)?/cmake"
     r"|lib/x86_64-linux-gnu|share|lib|include)/([A-Za-z]\w*)/")
@@ -29,7 +29,7 @@ class Binary:
 
 
 def read_packages(lines: Iterable[str]) -> dict[str, Binary]:
-    """Binary packages of a Packages file, by name; those that others provide are among them."""
+    """Binary packages of a Packages file, by name, including virtual ones (Provides)."""
     found: dict[str, Binary] = {}
     for fields in _paragraphs(lines):
         name = fields["Package"]
@@ -57,17 +57,16 @@ def _paragraphs(lines: Iterable[str]) -> Iterator[dict[str, str]]:
 
 
 def _names(relation: str) -> list[str]:
-    """`a (>= 1), b:any | c` is a and b: of alternatives apt takes the first."""
+    """Names in a relation: a and b of `a (>= 1), b:any | c`, as apt takes the first alternative."""
     return [re.split(r"[\s(:\[|]", word.strip())[0] for word in relation.split(",") if word.strip()]
 
 
 def ros_packages(contents: Iterable[str], binaries: dict[str, Binary]) -> dict[str, list[str]]:
-    """By ROS package the binary packages that hold a part of it, sorted.
+    """The binary packages that contain a part of each ROS package, sorted.
 
-    `contents`: lines PATH SECTION/PACKAGE[,SECTION/PACKAGE]. A ROS package is what has a
-    package.xml in /usr/share. Its parts are headers and CMake files (-dev), Python modules,
-    programs, definitions of messages; without Lisp, documentation, and what another part needs
-    anyway.
+    `contents`: lines PATH SECTION/PACKAGE[,SECTION/PACKAGE]. A ROS package has a package.xml in
+    /usr/share. Its parts are headers and CMake files (-dev), Python modules, programs, message
+    definitions; without Lisp, documentation, and packages that another part depends on.
     """
     rooms: dict[str, set[str]] = defaultdict(set)
     manifests: dict[str, set[str]] = defaultdict(set)

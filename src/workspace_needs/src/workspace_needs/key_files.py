@@ -1,6 +1,6 @@
-"""Makes the files in rosdep/: keys of Debian and keys of our own packages.
+"""Generates the files in rosdep/: Debian's keys and those of our own packages.
 
-Run by scripts/rosdep_keys.py; the same lists make the same bytes.
+Run by scripts/rosdep_keys.py; the same lists give the same bytes.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ Keys = dict[str, dict[str, list[str]]]  # by key, then by release
 
 
 class KeyFileError(ValueError):
-    """The data or the lists are not as they should be; the message says where."""
+    """The data or the lists are invalid; the message says where."""
 
 
 def check_system_keys(content: Any, where: str) -> dict[str, Any]:
-    """The content of data/system_keys.yaml; KeyFileError names an unknown or twofold key."""
+    """Checks data/system_keys.yaml's content; KeyFileError names an unknown or duplicate key."""
     if not isinstance(content, dict):
         raise KeyFileError(f"{where}: this is not a mapping")
     for section in content:
@@ -45,7 +45,7 @@ def debian_keys(releases: Mapping[str, tuple[dict[str, list[str]], dict[str, Bin
                 system: Mapping[str, Any]) -> Keys:
     """Every key with its packages in each release that has them all.
 
-    `releases`: by name its ROS packages (see debian_lists.ros_packages) and its binary packages.
+    `releases`: by name, ROS packages (see debian_lists.ros_packages) and binary packages.
     KeyFileError names a key that no release has.
     """
     keys: Keys = {}
@@ -84,7 +84,7 @@ def _first(choice: str, binaries: Mapping[str, Binary]) -> str | None:
 
 
 def _union(group: str, groups: Mapping[str, list[str]], release: str, keys: Keys) -> set[str]:
-    """What the members of a group come to; some are groups themselves."""
+    """The Debian packages of a group's members, some of which are groups themselves."""
     found: set[str] = set()
     for member in groups[group]:
         if member in groups:
@@ -107,7 +107,7 @@ def debian_text(keys: Keys, releases: Iterable[str]) -> str:
 
 
 def ours_text(names: Iterable[str], debian: Iterable[str]) -> str:
-    """Our packages, without those that Debian has too: their C++ side comes from there."""
+    """Our packages, except those that Debian has too, as their C++ part comes from there."""
     ours = sorted(set(names) - set(debian))
     return OURS_NOTE + "".join(f"{name}: {{debian: []}}\n" for name in ours)
 

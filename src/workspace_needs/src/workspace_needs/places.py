@@ -1,4 +1,4 @@
-"""Where this package's files are, in the source tree and installed."""
+"""Locates this package's files, in the source tree or installed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rosdep` as pages type it: Debian's own, on our files, without init, update and network."""
+"""`rosdep` as tutorials type it: Debian's, on our files, without init, update and network."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LIBRARY = Path(sys.prefix) / "rosdep"  # a folder of its own: see dependencies/p
 
 
 def main(argv: list[str] | None = None) -> int:
-    """rosdep's exit code; 1 where a key is unknown, which is named after the rest was installed."""
+    """rosdep's exit code; 1 if a key is unknown, which is reported after the rest was installed."""
     args = list(sys.argv[1:] if argv is None else argv)
     sys.path.append(str(LIBRARY))
     try:
@@ -29,7 +29,7 @@ def main(argv: list[str] | None = None) -> int:
     except ImportError as error:
         print(f"rosdep: {error}: make setup installs it", file=sys.stderr)
         return 1
-    if os.environ.get("ROSDEP_SOURCE_PATH"):  # the user's own sources, and then rosdep's own ways
+    if os.environ.get("ROSDEP_SOURCE_PATH"):  # the user has own sources: plain rosdep
         return _code(rosdep_main, args)
     command = next((word for word in args if word in COMMANDS), "")
     if command == "init":
@@ -70,14 +70,14 @@ def _code(rosdep_main: Callable, args: list[str]) -> int:
 
 
 def _follow_distro(args: list[str]) -> None:
-    """`--rosdistro noetic` on a terminal that says Debian is no mistake worth a warning."""
+    """Sets ROS_DISTRO as --rosdistro says, so that rosdep does not warn of a difference."""
     for word, value in zip(args, [*args[1:], ""]):
         if word.startswith("--rosdistro"):
             os.environ["ROS_DISTRO"] = word.partition("=")[2] or value
 
 
 def _from_paths(args: list[str], command: str) -> list[Path]:
-    """The folders among the words, where --from-paths says that they are some."""
+    """The folders in the arguments, if there is --from-paths."""
     if not any(word.startswith("--from-path") for word in args):
         return []
     words = [word for word in args if word[:1] != "-"]
@@ -86,11 +86,11 @@ def _from_paths(args: list[str], command: str) -> list[Path]:
 
 
 def _of_a_workspace(rosdep_main: Callable, args: list[str], command: str, tables: Tables) -> int:
-    """install or check: what nobody has stops nothing, and is said at the end."""
+    """install or check: keys that nobody has stop nothing, and are reported at the end."""
     simulate = bool({"-s", "--simulate"} & set(args))
     watch = Watch(tables)
     watch.patch(simulate)
-    code = _code(rosdep_main, [*args, "-n"])  # Debian knows what its packages need
+    code = _code(rosdep_main, [*args, "-n"])  # apt resolves Debian's own dependencies
     absent, unknown = watch.told()
     for line in absent + unknown:
         print(line, file=sys.stderr)
@@ -100,16 +100,16 @@ def _of_a_workspace(rosdep_main: Callable, args: list[str], command: str, tables
 
 
 class Watch:
-    """Stands between rosdep and its tables, and remembers the keys that nobody has."""
+    """Intercepts rosdep's lookups, and records the keys that nobody has."""
 
     def __init__(self, tables: Tables):
         self._tables = tables
-        self._askers: dict[str, set[str]] = {}  # by key the packages that ask for it
+        self._askers: dict[str, set[str]] = {}  # by key, the packages that depend on it
         self._not_had: list[str] = []
         self.failure = ""
 
     def patch(self, simulate: bool) -> None:
-        """For the rest of this process."""
+        """Patch rosdep for the rest of this process."""
         from rosdep2 import installers, lookup
         from rosdep2.platforms import debian
 
@@ -139,11 +139,11 @@ class Watch:
             installers.subprocess = SimpleNamespace(call=self._install)
 
     def _install(self, command: list[str]) -> int:
-        """In rosdep's place, for what `one_command` made."""
+        """Replaces rosdep's installer for the command that `one_command` made."""
         words = command[command.index("install") + 1:]
         if "-y" not in words:
             print(f"Install {len(words)} Debian packages ({' '.join(words)})? [Y/n] ", end="")
-            answer = (sys.stdin.readline() or "n").strip().lower()  # nobody there: no
+            answer = (sys.stdin.readline() or "n").strip().lower()  # end of input: no
             if answer not in ("", "y", "yes"):
                 self.failure = "nothing was installed; -y installs without a question"
                 return 1
@@ -155,19 +155,19 @@ class Watch:
         return 0
 
     def _other(self, key: str) -> tuple[str, ...]:
-        """Packages for a key that rosdep's files have not; none where nobody has it."""
+        """Packages for a key that is not in rosdep's files; none if nobody has it."""
         answer = self._tables.answer(key)
         if answer.kind not in (OURS, DEBIAN):
             self._not_had.append(key)
         return answer.packages
 
     def told(self) -> tuple[list[str], list[str]]:
-        """A line for each key that nobody has: those of which that is known, and the others.
+        """A line for each key that nobody has: the known ones (absent.yaml), and the others.
 
-        rosdep also looks up what Debian's packages ask for, which apt sees to.
+        Ignores keys that only Debian's packages depend on: apt handles those.
         """
         absent, unknown = [], []
-        here = set(rospkg.RosPack().list())  # by now with the folders of --from-paths
+        here = set(rospkg.RosPack().list())  # now includes the folders of --from-paths
         for key in sorted(set(self._not_had) & set(self._askers) - here):
             answer = self._tables.answer(key)
             line = f"rosdep: {key} (for {', '.join(sorted(self._askers[key]))}): {answer.why}"

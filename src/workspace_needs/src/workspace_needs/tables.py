@@ -1,4 +1,4 @@
-"""The tables as one: for a name that a package asks for, who has it."""
+"""All tables in one: tells who provides a dependency."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from workspace_needs.places import package_folder, release
 
 OURS, DEBIAN, ABSENT, UNKNOWN = "ours", "debian", "absent", "unknown"
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-# Debian's names of libraries have what ROS packages' never have; so one is not taken for another.
+# Forms of Debian names (lib..., hyphens) that ROS packages never have, so that none is confused.
 DEBIAN_NAME = re.compile(r"lib[a-z0-9.+-]+|[a-z0-9][a-z0-9.+]*(-[a-z0-9.+]+)+")
 
 
 class TableError(ValueError):
-    """A file of data/ is not as it should be; the message names file and key."""
+    """A file of data/ is invalid; the message names file and key."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Tables:
         return yaml.load((self._folder / name).read_text("utf-8"), LOADER) or {}
 
     def answer(self, key: str) -> Answer:
-        """Who has `key`; one that has Debian's own form of a name is looked up in apt's list."""
+        """Who has `key`; a name in Debian's form is looked up in apt's list."""
         packages = self.debian.get(key, {}).get("debian", {}).get(self._release)
         if packages is not None:
             return Answer(DEBIAN, tuple(packages))

@@ -12,33 +12,33 @@ import rospkg
 from workspace_needs.tables import ABSENT, DEBIAN, OURS, UNKNOWN, Answer, Tables
 from workspace_needs.workspace import Asked, Package, read_workspace
 
-# Names in find_package that come with CMake or catkin, or that its own script looks for.
+# Names in find_package that come with CMake or catkin, or that have a Find script.
 WITH_CMAKE = {"catkin", "Threads", "PkgConfig", "PythonInterp", "PythonLibs", "Python", "Python3",
               "Doxygen", "OpenMP", "Java", "Git", "Matlab", "CUDA"}
 
 
 @dataclass
 class Verdict:
-    """What will become of one package."""
+    """Whether one package can be built, and what it lacks."""
 
     name: str
     folder: Path
     missing: dict[str, str] = field(default_factory=dict)  # Debian package: the key that needs it
-    stops: dict[str, str] = field(default_factory=dict)  # what keeps it from being built: why
-    lacks: dict[str, str] = field(default_factory=dict)  # what it will do without: why
-    left_out: dict[str, str] = field(default_factory=dict)  # source file: why it is not compiled
-    unsure: list[str] = field(default_factory=list)  # what CMake may find, though no table has it
+    stops: dict[str, str] = field(default_factory=dict)  # obstacle to building it: reason
+    lacks: dict[str, str] = field(default_factory=dict)  # missing, but not needed to build: reason
+    left_out: dict[str, str] = field(default_factory=dict)  # source file not compiled: reason
+    unsure: list[str] = field(default_factory=list)  # names in no table, which CMake may find
 
     @property
     def builds(self) -> bool:
-        """Once what is missing is installed."""
+        """Whether it builds once `missing` is installed."""
         return not self.stops
 
 
 def judge(source: Path, tables: Tables | None = None) -> list[Verdict]:
-    """A verdict for each package below `source` that is not of this repository.
+    """A verdict for each package below `source` that does not belong to this repository.
 
-    WorkspaceError where no build tool builds any.
+    WorkspaceError if no build tool can build any.
     """
     tables = tables or Tables()
     packages = [package for package in read_workspace(source) if not package.is_ours]
@@ -89,18 +89,18 @@ def _verdict(package: Package, answers: dict[str, Answer], installed: set[str], 
 
 
 def _is_gazebo(asked: Asked) -> bool:
-    """Whether it is find_package(gazebo), which is answered here, without headers."""
+    """Whether it is find_package(gazebo), which we provide, without headers."""
     return asked.of_cmake and asked.key == "gazebo"
 
 
 def _has_module(name: str, folder: Path) -> bool:
-    """Whether CMake or the package itself brings a file that looks for `name`."""
+    """Whether CMake or the package itself has a Find module for `name`."""
     module = f"Find{name}.cmake"
     return any(Path("/usr/share").glob(f"cmake-*/Modules/{module}")) or any(folder.rglob(module))
 
 
 def _pass_on(packages: list[Package], verdicts: list[Verdict]) -> None:
-    """What is built with a package that is left out is left out, too."""
+    """Leaves out packages that depend on one that is left out."""
     by_name = {verdict.name: verdict for verdict in verdicts}
     changed = True
     while changed:

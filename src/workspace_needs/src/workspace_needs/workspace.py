@@ -1,4 +1,4 @@
-"""What the packages of a workspace ask for: package.xml, CMakeLists.txt, launch files, includes."""
+"""A workspace's dependencies, from package.xml, CMakeLists.txt, launch files and includes."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ NODE = re.compile(r"<node\b[^>]*\bpkg=[\"']([\w-]+)[\"']")
 FOUND = re.compile(r"\$\(find\s+([\w-]+)\s*\)")
 SOURCES = (".c", ".cc", ".cpp", ".cxx", ".h", ".hh", ".hpp")
 OUR_ADDRESS = "courses@example.org"
-LARGEST = 1 << 20  # bytes of a file that is looked through
+LARGEST = 1 << 20  # bytes of a file that is searched
 
 
 class WorkspaceError(ValueError):
-    """There is no such workspace, or nothing of it can be built; the message says what to do."""
+    """There is no such workspace, or nothing in it can be built; the message says what to do."""
 
 
 @dataclass(frozen=True)
 class Asked:
-    """A name that a package asks for, and the file that says so."""
+    """A dependency of a package, and the file that declares it."""
 
     key: str
     where: str
     stops: bool = False  # without it CMake stops
-    of_cmake: bool = False  # find_package(NAME), which need not be a ROS package
+    of_cmake: bool = False  # find_package(NAME), not necessarily a ROS package
 
 
 @dataclass
@@ -46,8 +46,8 @@ class Package:
     asked: list[Asked] = field(default_factory=list)
     includes: list[tuple[str, str]] = field(default_factory=list)  # header, file
     problem: str = ""  # why its package.xml cannot be read
-    unfit: dict[str, str] = field(default_factory=dict)  # what no build tool here can do: why
-    is_ours: bool = False  # of this repository: setup sees to what it asks for
+    unfit: dict[str, str] = field(default_factory=dict)  # what no build tool can handle: why
+    is_ours: bool = False  # of this repository: setup installs its dependencies
 
 
 def source_folder(path: Path) -> Path:
@@ -66,10 +66,10 @@ def source_folder(path: Path) -> Path:
 
 
 def read_workspace(source: Path) -> list[Package]:
-    """All packages below `source`, by name; WorkspaceError where no build tool builds any."""
+    """All packages below `source`, by name; WorkspaceError if no build tool can build any."""
     packages = [_read(source / path) for path in sorted(find_package_paths(str(source)))]
     home = next((each.folder.parent for each in packages if each.name == "workspace_needs"), None)
-    for package in packages:  # a copy of a lesson in somebody's own workspace is theirs
+    for package in packages:  # a copy of a lesson in a user's own workspace is not ours
         package.is_ours = package.is_ours and home in package.folder.parents
     by_name: dict[str, Path] = {}
     for package in packages:
@@ -126,7 +126,7 @@ def _declared(manifest) -> list[str]:
 
 
 def _built_with(path: Path) -> Iterator[Asked]:
-    """What find_package(catkin COMPONENTS ...) and find_package(NAME REQUIRED) ask for."""
+    """Dependencies in find_package(catkin COMPONENTS ...) and find_package(NAME REQUIRED)."""
     text = COMMENT.sub("", _text(path))
     variables = dict(SET.findall(text))
     for name, rest in FIND_PACKAGE.findall(text):

@@ -1,1 +1,1 @@
-"""AutoRace 2020 by the lessons of learning_autorace, scored mission by mission."""
+"""AutoRace 2020 driven by the lessons of learning_autorace, scored mission by mission."""

@@ -1,4 +1,4 @@
-"""Scores the missions of a drive by where the robot truly was, what was shown, and contacts."""
+"""Scores the missions of a drive by the robot's true poses, the models shown, and contacts."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from turtlebot3_gazebo.making.lanes import rounded
 
 WAY = rounded(WAY_2020, 0.3)  # the lane's middle, m
 HALF_LANE = 0.125  # m: the base is between the lines
-LIGHT_X, BAR_Y = 1.25, 0.66  # m, of the base: its front is at the light, before the bar
-LANE_END = 0.8  # m, y before the bar
-MAY_CHANGE = 0.5  # s: so late a green light or an open bar still counts
+LIGHT_X, BAR_Y = 1.25, 0.66  # m, of the base: its front is at the light, or before the bar
+LANE_END = 0.8  # m, y just before the bar: the lane mission ends there
+MAY_CHANGE = 0.5  # s: a green light or open bar shown this recently still counts
 BAYS = {"east": (0.755, 0.8), "west": (0.205, 0.8)}  # m
 IN_BAY = 0.08, 0.14  # m from a bay's middle along x and y
 PARKED = 1.0  # s
 STANDING = 0.005  # m between two samples
-START = 0.70, 1.00  # m, x at which a robot that stands at the red line stands
+START = 0.70, 1.00  # m, range of x for a robot that has stopped at the red line
 WHOSE = {"barrier": "lane", "traffic_bar": "bar", "unit_box": "bar", "tunnel": "tunnel",
          "turtlebot3_burger": "parking", "unit_sphere": "traffic_light",
-         "traffic_light": "traffic_light"}  # begin of a model's name: mission; others: lane
+         "traffic_light": "traffic_light"}  # prefix of a model's name: mission; others: lane
 GROUND = ("course", "ground", "ground2")
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Where the robot truly was, and which models of the mission stood there."""
+    """The robot's true position, and which models of the mission were in the world."""
 
     time: float  # s, simulated
     x: float  # m
@@ -39,7 +39,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class Score:
-    """Of one mission: `why` it was not passed, None: it was; s from the drive's begin."""
+    """One mission's: `why` it was not passed, None: it was; `time` in s since the drive began."""
 
     mission: str
     why: str | None
@@ -48,12 +48,12 @@ class Score:
 
     @property
     def passed(self) -> bool:
-        """Was it done, and nothing touched?"""
+        """Whether the mission was completed and nothing was touched."""
         return self.why is None
 
 
 def off_lane(x: float, y: float) -> float:
-    """m from the lane's middle; 0 in the car park and in the tunnel."""
+    """Distance (m) from the lane's middle; 0 in the car park and in the tunnel."""
     if in_car_park(x, y) or in_tunnel(x, y):
         return 0.0
     place, begins, pieces = np.array((x, y)), np.array(WAY[:-1]), np.diff(WAY, axis=0)
@@ -63,18 +63,18 @@ def off_lane(x: float, y: float) -> float:
 
 
 def in_car_park(x: float, y: float) -> bool:
-    """Is it the car park, or the way there?"""
+    """Whether the point is in the car park or on the way there."""
     return 0.0 < x < 1.0 and 0.4 < y < 1.66
 
 
 def in_tunnel(x: float, y: float) -> bool:
-    """Is it the tunnel, or a step before or behind it?"""
+    """Whether the point is in the tunnel, or just before or behind it."""
     return -2.1 < x < 0.1 and -2.1 < y < 0.1
 
 
 def score(samples: Sequence[Sample], contacts: dict[str, float], wanted: Sequence[str]
           ) -> list[Score]:
-    """One for each wanted mission. `contacts`: models that the robot touched, and when first, s."""
+    """One for each wanted mission; `contacts`: touched models and the times of first contact, s."""
     found = []
     for mission in wanted:
         touched = [name for name in contacts if _whose(name) == mission]
@@ -89,7 +89,7 @@ def _whose(model: str) -> str:
     return next((mission for begin, mission in WHOSE.items() if model.startswith(begin)), "lane")
 
 
-Found = tuple[float | None, str | None]  # s, and why it was not passed
+Found = tuple[float | None, str | None]  # time it ended, s, and why it was not passed
 
 
 def _lane(samples: Sequence[Sample]) -> Found:
@@ -103,7 +103,7 @@ def _lane(samples: Sequence[Sample]) -> Found:
 
 def _waits_for(shown: str, said: str, place: str, is_there: Callable[[Sample], bool]
                ) -> Callable[[Sequence[Sample]], Found]:
-    """The rule that a model stands there, or a moment before did, when the robot comes."""
+    """The rule that a model is shown, or was up to MAY_CHANGE before, when the robot arrives."""
     def rule(samples: Sequence[Sample]) -> Found:
         come = next(filter(is_there, samples), None)
         if come is None:
@@ -137,7 +137,7 @@ def _tunnel(samples: Sequence[Sample]) -> Found:
 
 
 def _finish(samples: Sequence[Sample]) -> Found:
-    after = dropwhile(lambda robot: robot.x >= -0.5 or robot.y >= -0.5, samples)  # the tunnel
+    after = dropwhile(lambda robot: robot.x >= -0.5 or robot.y >= -0.5, samples)  # from the tunnel
     for before, each in pairwise(after):
         if START[0] < each.x < START[1] and math.dist((before.x, before.y),
                                                       (each.x, each.y)) < STANDING:

@@ -1,4 +1,4 @@
-"""A simulator with the race's world, and a lesson that drives in it, watched from outside."""
+"""A simulator with the race's world and a lesson that drives in it, observed from outside."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SHOWN = ("traffic_light_", "traffic_bar_")
 
 
 class Rig:
-    """Made once a run; drives follow one another at the same ROS master."""
+    """Made once per run; successive drives use the same ROS master."""
 
     def __init__(self, launched: Launched):
         self._launched = launched
@@ -34,7 +34,7 @@ class Rig:
         rospy.Subscriber("/gazebo/model_states", ModelStates, self._take, queue_size=1)
 
     def begin(self, script: str, words: list[str], log: Path) -> None:
-        """Start world, mission and lesson; time stands still."""
+        """Start world, mission and lesson; the simulator stays paused."""
         self.samples = []
         self._log = log
         rospy.set_param("/gazebo/state_log", str(log))
@@ -47,7 +47,7 @@ class Rig:
         simulator.unpause()
 
     def watch(self) -> Sample:
-        """The newest sample; RunError if nothing is heard for a while."""
+        """The newest sample; RunError if none comes within SILENCE."""
         time.sleep(LOOK_PERIOD)
         until, count = time.monotonic() + SILENCE, len(self.samples)
         while len(self.samples) == count:
@@ -58,7 +58,7 @@ class Rig:
         return self.samples[-1]
 
     def end(self) -> dict[str, float]:
-        """End the drive; the models that the robot touched, and when first, s."""
+        """End the drive; returns the touched models and the times of first contact, s."""
         self._launched.end(self._child)
         touched: dict[str, float] = {}
         for line in self._log.read_text(encoding="utf-8").splitlines():

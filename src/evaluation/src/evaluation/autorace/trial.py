@@ -1,4 +1,4 @@
-"""`make autorace`: the lessons drive the course, or one mission of it, with many seeds."""
+"""`make autorace`: lessons drive the course, or one mission of it, with many seeds."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from trial_worlds.light import write_lit_world
 
 ALL = "all"
 LOST = 0.30  # m beside the lane: the drive is over
-STALLED = 40.0  # s in one place; a light or a bar lasts less
+STALLED = 40.0  # s in one place; a light or a bar takes less
 
 
 @dataclass(frozen=True)
 class Task:
-    """What drives, from where, and how long at most."""
+    """The script that drives, its start pose, its time limit and its missions."""
 
     script: str
     start: tuple[float, float, float]  # x, y in m, yaw in rad
@@ -59,24 +59,24 @@ class RaceCase(Case):
 
 @dataclass(frozen=True)
 class Drive:
-    """What became of it."""
+    """The result of one drive."""
 
     name: str
     mission: str
     seed: int
-    light: float  # times the world's own
+    light: float  # factor on the world's own light
     time: float  # s
     scores: tuple[Score, ...]
     path: list[tuple[float, float]]  # m
 
     @property
     def passed(self) -> bool:
-        """Every mission of it."""
+        """Whether every mission passed."""
         return all(each.passed for each in self.scores)
 
     @property
     def line(self) -> str:
-        """On one line."""
+        """A one-line summary."""
         failed = [f"{each.mission} {each.why}" for each in self.scores if not each.passed]
         return (f"{self.name}: {'; '.join(failed) or 'passed'}, {self.time:.1f} s, light"
                 f" x{self.light:.2f}")
@@ -123,7 +123,7 @@ class RaceTrial(ReportedTrial):
             f"seed:={case.seed}"], folder / f"{case.name}.log")
 
     def run(self) -> tuple[list[Sample], dict[str, float]]:
-        """Where the robot was, and what it touched."""
+        """The samples, and the touched models with the time of first contact, s."""
         stood_at = now = self._rig.watch()
         begin = now.time
         while now.time < begin + self._task.limit:
@@ -166,7 +166,7 @@ class RaceTrial(ReportedTrial):
 
 
 def write_sheet(drives: Sequence, path: Path) -> None:
-    """A line for each drive; those that failed end in a cross."""
+    """Draw every drive's path; that of a failed drive ends in a cross."""
     passed = sum(each.passed for each in drives)
     figure, axes = map_sheet("AutoRace 2020", f"{passed} of {len(drives)} drives passed",
                              (-2.1, -2.1), (2.1, 2.1))

@@ -1,1 +1,1 @@
-"""Drives by laser through halls with columns: does it arrive, and does it touch nothing?"""
+"""Drives by laser through halls with columns: must arrive and touch nothing."""

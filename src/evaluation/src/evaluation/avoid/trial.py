@@ -1,4 +1,4 @@
-"""`make avoid`: the laser's lesson drives through halls; the simulator's own log tells how."""
+"""`make avoid`: the laser lesson drives through halls, judged by the simulator's own log."""
 
 from __future__ import annotations
 
@@ -36,25 +36,25 @@ TILE = (5.0, 1.9)  # inches
 
 @dataclass(frozen=True)
 class Drive:
-    """How it went; m, s."""
+    """The result of one drive; m, s."""
 
     name: str
     seed: int
     outcome: str
     time: float
-    distance: float  # of the way driven
+    distance: float  # driven
     nearest: float  # from the axle's middle to a column's or wall's surface
     unanswered: int  # scans
     path: list[list[float]] = field(repr=False)  # x, y
 
     @property
     def passed(self) -> bool:
-        """Did it arrive without a contact?"""
+        """Whether it arrived without a contact."""
         return self.outcome == REACHED
 
     @property
     def line(self) -> str:
-        """On one line."""
+        """A one-line summary."""
         return (f"{self.name}: {self.outcome} after {self.time:.1f} s and {self.distance:.1f} m,"
                 f" nearest {self.nearest:.2f} m")
 
@@ -67,7 +67,7 @@ class Hall(Case):
 
 
 class AvoidTrial(ReportedTrial):
-    """Every hall is to be driven through without a contact."""
+    """Every hall must be driven through without a contact."""
 
     program = "avoid"
     does = "Drive by laser through halls with columns."
@@ -123,7 +123,7 @@ class AvoidTrial(ReportedTrial):
 
 
 def bring_up(launched: Launched, world: Path, seed: int, avoider: str, state_log: Path) -> None:
-    """Start all, wait until everybody is connected, and let time begin."""
+    """Start all, wait until all nodes are connected, and unpause."""
     launched.start_roscore()
     launched.start("roslaunch", [
         "roslaunch", "evaluation", "avoid.launch", f"world_name:={world}", f"seed:={seed}",
@@ -144,7 +144,7 @@ def watch(launched: Launched, state_log: Path) -> list[dict]:
 
 
 def outcome(state: dict) -> str | None:
-    """What has happened by then."""
+    """How the drive has ended by this state; None: it goes on."""
     if any({WAFFLE, "hall"} == set(pair) for pair in state["contacts"]):
         return CONTACT
     if state["poses"][WAFFLE][0] > hall.FINISH:
@@ -153,7 +153,7 @@ def outcome(state: dict) -> str | None:
 
 
 def scored(name: str, seed: int, states: list[dict]) -> Drive:
-    """The result of a drive's states."""
+    """The result computed from a drive's states."""
     path = np.array([state["poses"][WAFFLE][:2] for state in states])
     away = np.hypot(*(path[:, None] - hall.columns(seed)).transpose(2, 0, 1)) - hall.RADIUS
     nearest = min(away.min(), hall.WIDTH / 2 - np.abs(path[:, 1]).max())
@@ -172,7 +172,7 @@ def _connected(master_uri: str) -> bool:
 
 
 def _take(states: list[dict], lines: Sequence[str]) -> bool:
-    """Add the robot's states up to the drive's end; were there any? RunError: the log is none."""
+    """Add the robot's states up to the drive's end; True if there were any. RunError: bad log."""
     try:
         found = [state for state in map(json.loads, lines)
                  if WAFFLE in state.get("poses", {}) and math.isfinite(state["time"])]

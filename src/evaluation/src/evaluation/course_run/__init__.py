@@ -1,1 +1,1 @@
-"""The main job: start course and follower without a screen, watch, score, report, clean up."""
+"""The course run: starts course and follower headless, observes, scores, reports, cleans up."""

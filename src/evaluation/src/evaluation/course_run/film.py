@@ -1,4 +1,4 @@
-"""run.mp4 while the car drives: the camera's picture with the mask, beside the course."""
+"""run.mp4 of the drive: the camera image with the mask, beside the course."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MASK_TINT = (80, 60, 240)
 
 
 class CourseFilm(CameraFilm):
-    """Of one drive round a course."""
+    """The video of one drive round a course."""
 
     def __init__(self, path: Path, course: Course, track_file: TrackFile, drive: LapScorer,
                  period: float):
@@ -51,9 +51,9 @@ class CourseFilm(CameraFilm):
 
 
 def mark_line(view: np.ndarray, band: float) -> np.ndarray:
-    """Tint what the lessons' mask keeps, and put their red dot where lesson 05 finds the line.
+    """Tint the pixels in the lessons' mask, and draw a red dot where lesson 05 finds the line.
 
-    That is in a band at this share of the height; 0: the picture as it is.
+    It looks in a band at this share of the height; `band` 0: return the image as it is.
     """
     if not band:
         return view

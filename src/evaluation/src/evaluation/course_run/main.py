@@ -27,7 +27,7 @@ MOST_SECONDS = 999_999_999
 
 
 class CourseRun(CarDrive):
-    """One run: what is watched and what was found."""
+    """One run of a course: what is observed and what was found."""
 
     program = "course_run"
     does = "Drive a follower round the course without a screen, score it, write a report."
@@ -61,7 +61,7 @@ class CourseRun(CarDrive):
 
     @classmethod
     def check(cls, options: argparse.Namespace) -> argparse.Namespace:
-        """What was not asked for is as the course has it."""
+        """Fill options that were not given from the course file."""
         course = options.course
         options.duration = options.duration or 300.0 * options.laps
         options.follower = options.follower or course.follower
@@ -69,7 +69,7 @@ class CourseRun(CarDrive):
             one_of("follower", "FOLLOWER", drivers(course), options.follower)
         options.launch = tuple(options.launch or course.launch)
         options.track = options.track or course.track_path()
-        options.video &= not options.fingerprint  # a node takes a topic raw or not
+        options.video &= not options.fingerprint  # a node subscribes to a topic either raw or typed
         size = options.camera and dict(zip(("camera_width", "camera_height"), options.camera))
         asked = {**(size or {}), **({} if options.seed is None else {"seed": options.seed})}
         options.launch_args = (*(f"{name}:={value}" for name, value in asked.items()),
@@ -114,7 +114,7 @@ class CourseRun(CarDrive):
             **summarize(self.drive, outcome), **counted,
             "frames_per_simulated_s": (
                 round(counted["frames_sent"] / simulated, 2) if simulated > 0 else None),
-            # What was asked for that makes a run drive otherwise; None: as the launch file says.
+            # The options that affect the drive; None: as in the launch file.
             "fast": self.options.fast, "seed": self.options.seed,
             "camera_width_px": width, "camera_height_px": height,
             **({"sensor_sha256": self.sensor_sums} if self.sensor_sums else {})}
@@ -130,7 +130,7 @@ class CourseRun(CarDrive):
 
 
 def _titles(follower: str, summary: dict) -> tuple[str, str]:
-    """Headline and figures for the picture of the path."""
+    """Title and subtitle (with figures) of the path picture."""
     times = summary["lap_times_s"]
     laps = ", ".join(f"{time:.1f} s" for time in times[:3]) + (", ..." if len(times) > 3 else "")
     closed = f"{summary['laps_closed']} of {summary['laps_wanted']} laps closed"

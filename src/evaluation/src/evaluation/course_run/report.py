@@ -1,4 +1,4 @@
-"""The figures of a drive, and the table at the end: beside the last run of every other follower."""
+"""A drive's figures, and the final table that compares each follower's latest run."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def summarize(drive: LapScorer, outcome: tuple[str, str]) -> dict:
 
 
 def _lengths(part: object) -> dict:
-    """Of a lap, or of the whole drive."""
+    """Distance and lateral errors (m) of a lap, or of the whole drive."""
     return {"distance_m": round(part.distance, 3), "rms_lateral_m": round(part.rms_lateral, 4),
             "max_lateral_m": round(part.max_lateral, 4)}
 
@@ -58,7 +58,7 @@ def write_report(folder: Path, follower: str, run: dict) -> dict[str, dict]:
 
 
 def followers_table(runs: dict[str, dict], current: str) -> str:
-    """All followers' figures, a row each; the present run's row is marked."""
+    """All followers' figures, a row each; the current run's row is marked."""
     rows = [["  follower", *(heading for heading, *_ in COLUMNS), "outcome"]]
     for name, run in runs.items():
         cells = [cell(run.get(key), factor, digits) for _, key, factor, digits in COLUMNS]

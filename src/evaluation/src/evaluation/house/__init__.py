@@ -1,1 +1,1 @@
-"""The simulated house: its file, its ground, and who looks on while a robot drives in it."""
+"""The simulated house: its file, its ground, and the observers of a robot that drives in it."""

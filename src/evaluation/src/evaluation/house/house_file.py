@@ -1,4 +1,4 @@
-"""What is driven: world, robot, way-points and rules for goals, from a file of houses/."""
+"""A file of houses/: world, robot, waypoints and rules for goals."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ class House:
     """A house file, key by key; m and rad, in the world's frame."""
 
     world: str  # path, or package://PACKAGE/PATH
-    model: str  # of TurtleBot3
+    model: str  # TurtleBot3 model
     start: tuple[float, float, float]
     laser_height: Length
     laser_reach: Length  # beyond it walls are not mapped
-    passable: Length  # from a wall to the robot's reference point, at least
+    passable: Length  # least distance from a wall to the robot's reference point
     max_speed: Length  # m/s
-    goal_clearance: Length  # from a wall to a drawn goal, at least
-    goal_distance: Length  # from one drawn goal to the next, at least
-    way_points: tuple[tuple[float, float], ...]  # of the mapping round
+    goal_clearance: Length  # least distance from a wall to a random goal
+    goal_distance: Length  # least distance from one random goal to the next
+    way_points: tuple[tuple[float, float], ...]  # of the mapping drive
 
     @property
     def world_path(self) -> Path:
@@ -30,7 +30,7 @@ class House:
         return located(self.world).resolve()
 
     def ground(self) -> Ground:
-        """Its true walls; WorldError for a file that is no world."""
+        """Its true walls; WorldError if the file is not a world."""
         return Ground(self.world_path, self.start, self.laser_height, self.passable,
                       self.goal_clearance, self.goal_distance)
 

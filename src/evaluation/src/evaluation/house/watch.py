@@ -1,4 +1,4 @@
-"""What the run sees through ROS: where the robot is and believes to be, what it touches, maps."""
+"""Observes the run through ROS: the robot's true and estimated poses, contacts, maps."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ TOLD_VARIANCES = {0: 0.25, 7: 0.25, 35: (np.pi / 12) ** 2}  # x, y, yaw of 36
 
 
 class Watch:
-    """Looks on while others drive. Records begin anew with each part of the run.
+    """Observes while others drive. Each part of the run gets new records.
 
-    True poses are asked of the simulator 25 times a second; believed ones are what /tf says when
-    odometry's transform comes. The node must exist before use_sim_time is set: then it needs no
-    /clock, and does not mind when a restarted simulator's time begins again.
+    True poses are requested from the simulator 25 times a second; estimated ones come from /tf,
+    one for each odometry transform. The node must exist before use_sim_time is set: then it needs
+    no /clock, and is not disturbed when a restarted simulator's time begins again.
     """
 
     def __init__(self) -> None:
         rospy.init_node("navigate", anonymous=True, disable_signals=True, disable_rosout=True)
         self.records = Records()
-        self.feelers: Feelers | None = None  # what it touches is not noted without
+        self.feelers: Feelers | None = None  # None: contacts are not recorded
         self.map: OccupancyGrid | None = None
         self.beams = np.empty(0)  # (N,), rad, of the laser
         self.hits: np.ndarray | None = None  # (N, 2), m, of the last scan, in the laser's frame
@@ -50,7 +50,7 @@ class Watch:
         self._lock = threading.Lock()
 
     def start(self) -> None:
-        """Begin to look."""
+        """Begin to observe."""
         rospy.Subscriber("/tf", TFMessage, self._take_transforms, queue_size=100)
         rospy.Subscriber("/map", OccupancyGridMessage, self._take_map, queue_size=1)
         rospy.Subscriber("/scan", LaserScan, self._take_scan, queue_size=1)
@@ -58,11 +58,11 @@ class Watch:
         threading.Thread(target=self._ask_poses, daemon=True, name="pose").start()
 
     def stop(self) -> None:
-        """Look no more; does not wait for an answer that may never come."""
+        """Stop observing; does not wait for an answer that may never come."""
         self._ended.set()
 
     def begin(self) -> None:
-        """A new part of the run: nothing is known any more."""
+        """Begin a new part of the run: forget everything."""
         with self._lock:
             self.records = Records()
             self.map, self.hits, self._map_to_odom = None, None, None
@@ -107,7 +107,7 @@ class Watch:
 
 
 def told_pose(place: np.ndarray, now: float) -> PoseWithCovarianceStamped:
-    """As rviz's 2D Pose Estimate sends it: x, y, yaw on the map, at a time, s."""
+    """A message as from rviz's 2D Pose Estimate: x, y, yaw on the map, at a time, s."""
     message = PoseWithCovarianceStamped()
     message.header.frame_id, message.header.stamp = MAP, rospy.Time.from_sec(now)
     message.pose.pose = pose_message(tuple(place.tolist()))

@@ -1,1 +1,1 @@
-"""The lane course: its world by script, people who cross, and trials of those who keep the lane."""
+"""The lane course: people who cross the road, and trials of lane keeping methods."""

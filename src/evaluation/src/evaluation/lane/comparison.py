@@ -19,7 +19,7 @@ COLOUR, FAILED, LIMIT = "#1b6ca8", "#c0392b", "#7a8b99"
 
 
 class LaneComparison(LaneDrives):
-    """A method that fails is a finding, not a failure."""
+    """Compares methods; a method that fails is a result, not a failure of the program."""
 
     program = "bench_lanes"
     does = "Compare all methods on the same seeds."
@@ -58,7 +58,7 @@ class LaneComparison(LaneDrives):
         return ["lanes.png"]
 
     def _ms_a_frame(self) -> dict[str, float]:
-        """Of each method; measured once."""
+        """CPU time per image of each method, ms; measured once."""
         for method in self._methods:
             if method not in self._times:
                 self._times[method] = round(ms_a_frame(method), 2)
@@ -66,7 +66,7 @@ class LaneComparison(LaneDrives):
 
 
 def write_chart(drives: Sequence[LaneDrive], times: Mapping[str, float], path: Path) -> None:
-    """Three panels, a row for each method; a lap that was not closed is a red cross."""
+    """Three panels, a row for each method; a red cross marks a lap that was not completed."""
     methods = grouped(drives, lambda drive: drive.method)
     with chart(path, 1, 3, sharey=True) as ((rms, speed, time),):
         for number, (method, found) in enumerate(methods.items()):

@@ -1,13 +1,13 @@
-"""Judges what a car did about each person who crossed before it, from true poses.
+"""Judges from true poses how a car behaved towards each person who crossed in front of it.
 
-An encounter: a person's body is between the lane's lines (in the lane) while the car comes to that
-zebra, its front at most APPROACH before it. Rules, each on its own:
+An encounter: a person's body is between the lane's lines (in the lane) while the car approaches
+that zebra crossing, its front at most APPROACH before it. Rules, each judged separately:
 - touched: the car's outline and the person's body came nearer than TOUCHED. Never allowed, and
-  looked at over the whole drive, not only in encounters.
+  checked over the whole drive, not only in encounters.
 - stood off: while a person is in the lane and the car is before them, its front stays KEPT_OFF or
   more from the person's body, and a car that stops, stops KEPT_OFF or more before the zebra.
-- moved on: MOVES_ON after the person left the lane at the latest the car drives at GOES or more,
-  unless it never had to stop.
+- moved on: at the latest MOVES_ON after the person left the lane, the car drives at GOES or more,
+unless it never had to stop.
 """
 
 from __future__ import annotations
@@ -20,48 +20,48 @@ from lane_keeping.world.scenery import Crossings, Zebra
 
 from evaluation.lane.recording import CAR, Moment, Recording, last
 
-CAR_FRONT, CAR_REAR, CAR_HALF_WIDTH = 0.20, 0.16, 0.15  # m round base_footprint, wheels included
+CAR_FRONT, CAR_REAR, CAR_HALF_WIDTH = 0.20, 0.16, 0.15  # m from base_footprint, incl. wheels
 APPROACH, KEPT_OFF, TOUCHED = 2.0, 0.3, 0.005  # m
 MOVES_ON, GOES, STANDS = 2.0, 0.1, 0.05  # s, m/s, m/s
 
 
 @dataclass(frozen=True)
 class Encounter:
-    """One person's walk through the lane before a car; m, s."""
+    """One person's walk through the lane in front of a car; m, s."""
 
     person: str
     zebra: int  # from 1
-    entered: float  # s, simulated: the body reached the lane
-    left: float  # s: it was out of the lane again
+    entered: float  # simulated time at which the body reached the lane
+    left: float  # simulated time at which it was out of the lane again
     nearest: float  # from the car's outline to the body
-    stopped_before: float | None  # front to zebra where the car stood; None: it did not stand
-    moved_after: float | None  # s from `left` until the car drove; None: it need not, or never did
-    must_move: bool  # it stood when the lane was clear
+    stopped_before: float | None  # from front to zebra where the car stopped; None: it did not
+    moved_after: float | None  # from `left` until the car drove; None: never, or it had not stopped
+    must_move: bool  # whether it was stopped when the lane was clear
 
     @property
     def touched(self) -> bool:
-        """Did they meet?"""
+        """Whether car and person touched."""
         return self.nearest < TOUCHED
 
     @property
     def stood_off(self) -> bool:
-        """Did the car keep away from person and zebra?"""
+        """Whether the car kept its distance from person and zebra."""
         before = self.stopped_before
         return self.nearest >= KEPT_OFF and (before is None or before >= KEPT_OFF)
 
     @property
     def moved_on(self) -> bool:
-        """Did it drive again soon enough?"""
+        """Whether it drove on soon enough."""
         return not self.must_move or (self.moved_after is not None and self.moved_after <= MOVES_ON)
 
     @property
     def passed(self) -> bool:
-        """All of it."""
+        """Whether all rules were kept."""
         return not self.touched and self.stood_off and self.moved_on
 
 
 def judge(recording: Recording, crossings: Crossings, lane_half: float) -> list[Encounter]:
-    """All encounters of a drive, in the order of time; `lane_half` m from middle to line."""
+    """All encounters of a drive, in order of time; `lane_half`: m from lane middle to line."""
     found = []
     for number, zebra in enumerate(crossings.zebras, start=1):
         person = f"pedestrian_{number}"
@@ -73,7 +73,7 @@ def judge(recording: Recording, crossings: Crossings, lane_half: float) -> list[
 
 
 def nearest_ever(recording: Recording) -> float:
-    """Least distance (m) of the car's outline from anybody, over the whole drive."""
+    """Least distance (m) between the car's outline and any person, over the whole drive."""
     people = [moments for name, moments in recording.items() if name != CAR]
     gaps = [distance(car, there) for moments in people for car in recording.get(CAR, [])
             if (there := last(moments, car.time)) is not None
@@ -89,7 +89,7 @@ def distance(car: Moment, person: Moment) -> float:
 
 
 def _walks(moments: list[Moment], zebra: Zebra, lane_half: float) -> list[tuple[float, float]]:
-    """When a person's body was in the lane: times of entering and leaving."""
+    """The times at which a person's body entered and left the lane, one pair for each walk."""
     walks, entered = [], None
     for moment in moments:
         left = _within(zebra.x, zebra.y, zebra.heading, moment)[1]
@@ -120,7 +120,7 @@ def _encounter(recording: Recording, crossings: Crossings, number: int,
 
 
 def _front_gap(car: Moment, zebra: Zebra, length: float) -> float | None:
-    """From the car's front to the zebra's near edge, m, below 0 on it; None: not before it."""
+    """From the car's front to the zebra's near edge, m, negative on it; None: past or beside it."""
     along, left = _within(zebra.x, zebra.y, zebra.heading, car)
     if abs(left) > 1.0 or along - CAR_REAR > length / 2:
         return None
@@ -132,6 +132,6 @@ def _moves_after(cars: list[Moment], clear: float) -> float | None:
 
 
 def _within(x: float, y: float, yaw: float, other: Moment) -> tuple[float, float]:
-    """Metres ahead and to the left of a pose."""
+    """The other's position ahead and to the left of a pose, m."""
     dx, dy = other.x - x, other.y - y
     return (math.cos(yaw) * dx + math.sin(yaw) * dy, math.cos(yaw) * dy - math.sin(yaw) * dx)

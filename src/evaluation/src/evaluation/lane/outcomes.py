@@ -1,4 +1,4 @@
-"""What became of the drives: laps and encounters, one by one and as tables."""
+"""The drives' results: laps and encounters, one by one and as tables."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ class LaneDrive(LapDrive):
     people: bool
     laps_wanted: int
     laps_closed: int
-    nearest_person: float | None = None  # over the whole drive; None: nobody was there
+    nearest_person: float | None = None  # over the whole drive; None: no people
     encounters: tuple[Encounter, ...] = field(default=())
 
     @property
     def name(self) -> str:
-        """Of its case."""
+        """Its case's name."""
         return f"{self.method} {'people' if self.people else 'laps'}-{self.seed}"
 
     @property
     def line(self) -> str:
-        """On one line, and another for each encounter that was not passed."""
+        """A one-line summary, and another line for each encounter that was not passed."""
         failed = [each for each in self.encounters if not each.passed]
         count = len(self.encounters)
         met = f", {count - len(failed)} of {count} encounters passed" if self.people else ""
@@ -42,7 +42,7 @@ class LaneDrive(LapDrive):
 
     @property
     def kept_clear(self) -> bool:
-        """Was nobody touched, over the whole drive? Without a distance nobody knows."""
+        """Whether nobody was touched in the whole drive; False if the distance is unknown."""
         return self.nearest_person is not None and self.nearest_person >= TOUCHED
 
 
@@ -65,7 +65,7 @@ def lap_table(drives: Sequence[LaneDrive], ms_a_frame: dict[str, float] | None =
 
 
 def encounter_table(drives: Sequence[LaneDrive]) -> str:
-    """Counts of what is demanded of a car that meets people."""
+    """How often the car kept each rule about people."""
     met = [each for drive in drives for each in drive.encounters]
     if not met:
         return "nobody was met"

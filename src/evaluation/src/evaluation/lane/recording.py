@@ -1,4 +1,4 @@
-"""Where car and people truly were, as lines of a file: what crossings are judged by afterwards."""
+"""True poses of car and people, as lines of a file, by which encounters are judged afterwards."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ class Moment:
     speed: float
 
 
-# In the order of time, by name: CAR, and people by their models' names.
+# In order of time, by name: CAR, and people by their models' names.
 Recording = dict[str, list[Moment]]
 
 
 def last(moments: list[Moment], time: float) -> Moment | None:
-    """The last of them up to this time."""
+    """The last of them up to this time; None: there is none."""
     index = bisect.bisect_right(moments, time, key=lambda moment: moment.time)
     return moments[index - 1] if index else None
 
 
 def line_of(name: str, moment: Moment) -> str:
-    """One moment as it stands in the file."""
+    """The file's line for one moment."""
     return (f"{name} {moment.time:.3f} {moment.x:.4f} {moment.y:.4f} {moment.yaw:.4f} "
             f"{moment.speed:.4f}\n")
 
 
 def read_recording(path: Path) -> Recording:
-    """What `line_of` wrote; a last line that was cut off does not count."""
+    """Read what `line_of` wrote; an incomplete last line is ignored."""
     found: Recording = {}
     try:
         lines = path.read_text(encoding="utf-8").split("\n")[:-1]

@@ -1,4 +1,4 @@
-"""`make lane-trials`: laps in differing light, then encounters with people."""
+"""`make lane-trials`: laps in varied light, then encounters with people."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from evaluation.trial.protocol import REPORT, Case
 from run_session.failure import RunError
 from run_session.resources import find_package
 
-LAPS_WITH_PEOPLE = 4  # in a row; bringing up a simulator takes as long as a quarter of a lap
+LAPS_WITH_PEOPLE = 4  # in a row; starting a simulator takes as long as a quarter of a lap
 PEOPLE_FROM = 500  # first seed of the drives with people
 BOUNDS = Bounds(sideways=0.05, along=0.0, turn=0.1, camera_noise=(0.0, 0.02), light=(0.6, 1.4))
-NEAR = 3.0  # m: people set off when the car is that near or nearer, so that they meet
+NEAR = 3.0  # m: people set off once the car is this close, so that they meet
 LONGEST_LAP = 240.0  # s, simulated
 
 
 @dataclass(frozen=True)
 class LaneCase(Case):
-    """What to drive: a method's name, a seed, laps in a row, and whether people cross."""
+    """A drive: method's name, seed, laps in a row, and whether people cross."""
 
     method: str
     seed: int
@@ -40,13 +40,13 @@ class LaneCase(Case):
 
 
 def lane_case(method: str, seed: int, people: bool = False) -> LaneCase:
-    """One lap alone, or some with people."""
+    """The case of one lap without people, or of several with people."""
     name = f"{method} {'people' if people else 'laps'}-{seed}"
     return LaneCase(name, method, seed, LAPS_WITH_PEOPLE if people else 1, people)
 
 
 class LaneDrives(LapTrial):
-    """What the trials of one method and the comparison of all have in common."""
+    """Shared by the trials of one method and the comparison of all."""
 
     result = LaneDrive
 
@@ -79,12 +79,12 @@ class LaneDrives(LapTrial):
                        encounters=tuple(met))
 
     def earlier(self, options: argparse.Namespace) -> list[LaneDrive]:
-        """None is no mistake."""
+        """Results so far; it is no error if there are none."""
         return super().earlier(options) if (options.out / REPORT).exists() else []
 
 
 class LaneTrial(LaneDrives):
-    """One method's laps alone, and drives with people until so many were met."""
+    """One method's laps without people, and drives with people until enough were met."""
 
     program = "lane_trials"
     does = "Drive laps in differing light and past people."
@@ -105,7 +105,7 @@ class LaneTrial(LaneDrives):
         self._crossings = options.crossings
 
     def cases(self, options: argparse.Namespace) -> list[LaneCase]:
-        """At most as many drives with people as people are to be met."""
+        """Includes at most as many drives with people as encounters are wanted."""
         return [*(lane_case(options.method, seed) for seed in range(options.seeds)),
                 *(lane_case(options.method, PEOPLE_FROM + number, people=True)
                   for number in range(options.crossings))]

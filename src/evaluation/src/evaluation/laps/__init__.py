@@ -1,1 +1,1 @@
-"""Laps that course_run drives, each with a start, camera noise and light of its own."""
+"""Laps driven by course_run, each with its own start, camera noise and light."""

@@ -1,4 +1,4 @@
-"""What differs from lap to lap: where the car starts, its camera's noise, the light."""
+"""Disturbances that vary from lap to lap: start pose, camera noise, light."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from racecar_description.track.closed_line import Track
 
 @dataclass(frozen=True)
 class Disturbance:
-    """Of one lap."""
+    """The disturbance of one lap."""
 
     sideways: float  # m beside the line, positive to the left
-    along: float  # m along the line, from where laps begin
+    along: float  # m along the line, from the start of laps
     turn: float  # rad from the line's direction, positive to the left
     camera_noise: float  # standard deviation; 1 is full brightness
-    light: float  # times the world's own
+    light: float  # factor on the world's own light
 
     def start(self, track: Track) -> tuple[float, float, float]:
-        """x, y (m) and yaw (rad) in the world at which the car starts."""
+        """The car's start pose: x, y (m) and yaw (rad) in the world."""
         x, y, heading = track.pose(self.along)
         x -= self.sideways * math.sin(heading)
         y += self.sideways * math.cos(heading)
@@ -29,7 +29,7 @@ class Disturbance:
 
 @dataclass(frozen=True)
 class Bounds:
-    """Between which disturbances are drawn: m and rad to either side, and as in Disturbance."""
+    """Bounds of random disturbances: m and rad to either side; other units as in Disturbance."""
 
     sideways: float
     along: float
@@ -38,13 +38,13 @@ class Bounds:
     light: tuple[float, float]
 
 
-# Of race-trials, and of learning environments that ask for the trials' disturbances.
+# For race-trials, and for learning environments that use the trials' disturbances.
 RACE = Bounds(sideways=0.2, along=0.2, turn=math.radians(10), camera_noise=(0.01, 0.03),
               light=(0.7, 1.3))
 
 
 def draw(seed: int, bounds: Bounds) -> Disturbance:
-    """The seed's disturbance, evenly distributed between the bounds."""
+    """The seed's disturbance, uniformly distributed between the bounds."""
     random = np.random.default_rng(seed)
     return Disturbance(
         sideways=random.uniform(-bounds.sideways, bounds.sideways),

@@ -1,4 +1,4 @@
-"""A trial whose cases are drives of course_run, each with light, noise and a start of its own."""
+"""A trial whose cases are drives of course_run, each with its own light, noise and start."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from trial_worlds.light import write_lit_world
 
 CLOSED = "closed"
 MODEL_PATH = "GAZEBO_MODEL_PATH"
-# s, wall: the machine may be busy, and must not change a drive
+# s, wall: long, because a busy machine must not change a drive
 STARTUP_LIMIT, LAP_LIMIT, ANSWER_LIMIT = 240.0, 1800.0, 20.0
 
 
 @dataclass(frozen=True)
 class Venue:
-    """One track and what belongs to it."""
+    """One track and its models."""
 
     world: Path
     track: Path  # YAML of its centre line
@@ -36,22 +36,22 @@ class Venue:
 
 @dataclass(frozen=True)
 class Outing:
-    """One drive of course_run, as fast as it goes, in a world of its own light."""
+    """One drive of course_run, as fast as possible, in a world with its own light."""
 
     what: str  # for messages
     course: str
     follower: str
     venue: Venue
-    lit: Path  # folder for the world in its own light
+    lit: Path  # folder for the world with its own light
     out: Path  # folder for results
     disturbance: Disturbance
-    longest: float  # s, simulated, a lap
+    longest: float  # limit for a lap, s, simulated
     laps: int = 1
-    options: tuple[str, ...] = ()  # more of course_run's
-    launch: tuple[str, ...] = ()   # more for the launch file
+    options: tuple[str, ...] = ()  # further ones for course_run
+    launch: tuple[str, ...] = ()   # further arguments for the launch file
 
     def arguments(self, seed: int, world: Path) -> list[str]:
-        """Those of course_run, but for where results go."""
+        """The command line of course_run, without the folder for results."""
         x, y, yaw = self.disturbance.start(load_track(self.venue.track))
         named = (f"world_name:={world}", f"x_pos:={x:.6f}", f"y_pos:={y:.6f}", f"yaw:={yaw:.6f}",
                  f"camera_noise:={self.disturbance.camera_noise:.6f}",
@@ -65,34 +65,34 @@ class Outing:
 
 @dataclass(frozen=True, kw_only=True)
 class LapDrive:
-    """One drive, or how far it came; m, m/s. Speed counts standing, too."""
+    """One drive, complete or not; m, m/s. Mean speed includes time spent standing."""
 
-    most_rms: ClassVar[float] = 0.05  # m beside the line
+    most_rms: ClassVar[float] = 0.05  # m, lateral error
     least_speed: ClassVar[float]
 
     seed: int
     outcome: str
     why: str | None
     mean_speed: float
-    rms_lateral: float  # of the whole drive, the way from where it was put to the line included
+    rms_lateral: float  # of the whole drive, including the way from its start pose to the line
     max_lateral: float
-    frames_dropped: int  # images without a command: such a drive will not be repeated
+    frames_dropped: int  # images without a command: such a drive is not reproducible
     disturbance: Disturbance
 
     @property
     def closed(self) -> bool:
-        """Did it go all the way?"""
+        """Whether all laps were completed."""
         return self.outcome == CLOSED
 
     @property
     def within_limits(self) -> bool:
-        """Closed, close enough to the line, fast enough."""
+        """Whether it was completed, close enough to the line, and fast enough."""
         return (self.closed and self.rms_lateral <= self.most_rms
                 and self.mean_speed >= self.least_speed)
 
 
 class LapTrial(ReportedTrial):
-    """Sets up and runs; what a drive is worth is for the trial to say."""
+    """Sets up and runs the drives; subclasses judge them."""
 
     result: type[LapDrive]
     derived = ("within_limits",)
@@ -113,11 +113,11 @@ class LapTrial(ReportedTrial):
             outing.out, {**os.environ, MODEL_PATH: ":".join(map(str, folders))})
 
     def run(self) -> dict:
-        """course_run's report."""
+        """Returns course_run's report."""
         return self._drive.report(LAP_LIMIT * self._outing.laps, self._outing.what)
 
     def values(self, results: Sequence[LapDrive], **more: object) -> dict:
-        """All there is, with the limits it is held against."""
+        """All results, with the limits by which they are judged."""
         return {"most_rms_lateral_m": self.result.most_rms,
                 "least_mean_speed_mps": self.result.least_speed, **more,
                 **super().values(results)}
@@ -136,7 +136,7 @@ def seen(report: dict, seed: int, disturbance: Disturbance) -> dict:
 
 
 def summary(drives: Sequence[LapDrive]) -> dict:
-    """Of several; figures are of closed ones, None where there are none."""
+    """Figures of several drives, taken from the completed ones; None if there are none."""
     closed = [drive for drive in drives if drive.closed]
     speeds, errors = [each.mean_speed for each in closed], [each.rms_lateral for each in closed]
     return {"laps": len(drives), "closed": len(closed),

@@ -1,1 +1,1 @@
-"""How well amcl tracks, finds and finds again a robot in the simulated house."""
+"""How well amcl localises, relocalises and tracks a robot in the simulated house."""

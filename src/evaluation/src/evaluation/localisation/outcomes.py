@@ -1,4 +1,4 @@
-"""What became of the trials: one by one, as a table, and as report.json."""
+"""The trials' results: one by one, as a table, and as report.json."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import ClassVar
 import numpy as np
 
 FINDING, KIDNAPS = "finding", "kidnaps"  # the two sets of trials
-RIGHT_OFF, RIGHT_OFF_DEG = 0.3, 15.0  # m and degrees, at most, of a pose that counts as right
-HOLD = 20.0  # s, simulated, that it must stay right for
-LIMITS = {FINDING: 60.0, KIDNAPS: 120.0}  # s, simulated, by when it must be right
+RIGHT_OFF, RIGHT_OFF_DEG = 0.3, 15.0  # m and degrees: largest error of a pose that counts as right
+HOLD = 20.0  # s, simulated, for which it must stay right
+LIMITS = {FINDING: 60.0, KIDNAPS: 120.0}  # s, simulated, within which it must be right
 LEAST_SHARES = {FINDING: 0.95, KIDNAPS: 0.8}
-MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # in the mean, while it is tracked
+MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # m and degrees: mean error while tracking
 MOST_CPU = 30.0  # percent of a core
 LIMITS_IN_REPORT = {"right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within": LIMITS,
                     "least_shares": LEAST_SHARES, "tracking": [MOST_OFF, MOST_OFF_DEG],
@@ -21,29 +21,29 @@ LIMITS_IN_REPORT = {"right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within":
 
 @dataclass(frozen=True)
 class Trial:
-    """One robot that had to be found; m, s simulated, degrees."""
+    """One robot that had to be localised; m, s simulated, degrees."""
 
     set: str
     number: int
-    start: tuple[float, float, float]  # in the world; rad
-    took: float | None  # until it was right and stayed so; None: it was not, or not for long
-    off: float | None  # at the end; None: it had no pose
+    start: tuple[float, float, float]  # x, y, yaw in the world; m, rad
+    took: float | None  # until it was right for HOLD; None: it never was
+    off: float | None  # error at the end; None: there was no pose
     off_deg: float | None
     touched: int
 
     @property
     def name(self) -> str:
-        """Of its case."""
+        """Its case's name."""
         return f"{self.set}-{self.number}"
 
     @property
     def right(self) -> bool:
-        """In time?"""
+        """Whether it was localised in time."""
         return self.took is not None and self.took <= LIMITS[self.set]
 
     @property
     def line(self) -> str:
-        """On one line."""
+        """A one-line summary."""
         found = "not found" if self.took is None else f"found after {self.took:.1f} s"
         late = "" if self.right or self.took is None else ", too late"
         end = (", no pose at the end" if self.off is None else
@@ -57,21 +57,21 @@ class Tracking:
 
     time: float
     driven: float
-    off: float  # in the mean
+    off: float  # mean error
     off_deg: float
     largest_off: float
     largest_off_deg: float
 
-    name: ClassVar[str] = "tracking"  # of its case
+    name: ClassVar[str] = "tracking"  # its case's name
 
     @property
     def passed(self) -> bool:
-        """Within the limits?"""
+        """Whether the mean errors are within the limits."""
         return self.off <= MOST_OFF and self.off_deg <= MOST_OFF_DEG
 
     @property
     def line(self) -> str:
-        """On one line."""
+        """A one-line summary."""
         return f"tracking: {self.off * 100:.1f} cm, {self.off_deg:.1f}° off in the mean"
 
     @property
@@ -84,23 +84,23 @@ class Tracking:
 
 @dataclass(frozen=True)
 class Load:
-    """What amcl's process used; s."""
+    """CPU time that amcl's process used; s."""
 
     particles: int
     simulated: float
     wall: float
-    percent: float  # of one core: s used in 100 simulated s
+    percent: float  # of one core: s of CPU time in 100 simulated s
 
-    name: ClassVar[str] = "load"  # of its case
+    name: ClassVar[str] = "load"  # its case's name
 
     @property
     def passed(self) -> bool:
-        """Within the limit?"""
+        """Whether it is within the limit."""
         return self.percent <= MOST_CPU
 
     @property
     def line(self) -> str:
-        """On one line."""
+        """A one-line summary."""
         return f"load: {self.percent:.0f} % of a core"
 
     @property
@@ -114,7 +114,7 @@ Result = Trial | Tracking | Load
 
 
 def tracking(seconds: float, driven: float, errors: np.ndarray) -> Tracking:
-    """Of a drive of so many s, simulated, and m; errors are (N, 2), m and rad."""
+    """The result of a drive: simulated s, m driven, and errors (N, 2), m and rad."""
     mean, largest = errors.mean(axis=0), errors.max(axis=0)
     return Tracking(seconds, driven, float(mean[0]), float(np.degrees(mean[1])),
                     float(largest[0]), float(np.degrees(largest[1])))
@@ -122,7 +122,7 @@ def tracking(seconds: float, driven: float, errors: np.ndarray) -> Tracking:
 
 def searched(kind: str, number: int, start: tuple[float, float, float], began: float,
              times: np.ndarray, errors: np.ndarray, touched: int) -> Trial:
-    """Of a robot that had to be found; times (N,), s, simulated; errors (N, 2), m and rad."""
+    """The result of a localisation; times (N,), s, simulated; errors (N, 2), m and rad."""
     since = right_since(times, errors)
     held = since is not None and times[-1] - since >= HOLD
     off, turned = (round(float(each), 4) for each in errors[-1]) if len(errors) else (None, None)
@@ -131,7 +131,7 @@ def searched(kind: str, number: int, start: tuple[float, float, float], began: f
 
 
 def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:
-    """From which of the times (N,), s, on all errors (N, 2), m and rad, are small to the end."""
+    """The time from which on all errors (N, 2), m and rad, at times (N,), s, are small; or None."""
     if not len(times):
         return None
     wrong = np.flatnonzero((errors > (RIGHT_OFF, np.radians(RIGHT_OFF_DEG))).any(axis=1))

@@ -1,4 +1,4 @@
-"""The running simulator with the waffle, map_server and amcl: what trials do with them."""
+"""The running simulator with the waffle, map_server and amcl, as the trials use them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ call_service = partial(simulator.call, wait=STILL_LIMIT)
 
 
 class Rig:
-    """Made once a run; all of its calls may raise RunError."""
+    """Made once per run; all of its methods may raise RunError."""
 
     def __init__(self, options: argparse.Namespace, ground: Ground, launched: Launched,
                  map_file: str, progress: StatusLine):
@@ -53,11 +53,11 @@ class Rig:
 
     @property
     def now(self) -> float:
-        """s, simulated."""
+        """Simulated time, s."""
         return self.watch.records.now
 
     def may_go_on(self) -> bool:
-        """Whether the robot, going straight on, stays on the map: it ends where the house does."""
+        """Whether the robot, going straight on, would stay on the map, which ends at the house."""
         truth = self.watch.records.truth
         if not truth:
             return True
@@ -67,9 +67,9 @@ class Rig:
         return bool(walls.contains(walls.cells_of(point)))
 
     def use_odometry(self, by_wheels: bool) -> None:
-        """A new robot, if need be: with the wheels' odometry, or the true one, as TurtleBot3's.
+        """Respawn the robot, if necessary, with wheel odometry, or ground truth as TurtleBot3 has.
 
-        The true one would tell amcl whereto the robot is carried.
+        Ground truth would tell amcl where the robot was moved.
         """
         if self._by_wheels == by_wheels:
             return
@@ -86,22 +86,22 @@ class Rig:
         self.watch.feelers = self._ground.feelers(urdf)
 
     def put(self, place: np.ndarray) -> None:
-        """The robot stands at a pose (3,) in the world; its wheels know nothing of it."""
+        """Move the robot to a pose (3,) in the world, unnoticed by its wheel odometry."""
         simulator.put(ROBOT, tuple(place.tolist()), STILL_LIMIT)
         self.watch.begin()
         self._wait("the robot in its place", lambda: self.watch.records.truth and np.linalg.norm(
             self.watch.records.true_pose[:2] - place[:2]) < 0.2)
 
     def tell(self, place: np.ndarray) -> None:
-        """As rviz's 2D Pose Estimate does: roughly here, in the world's frame."""
+        """Publish an initial pose (3,), in the world's frame, as rviz's 2D Pose Estimate does."""
         self._told.publish(told_pose(place, self.now))
 
     def forget(self) -> None:
-        """The robot may be anywhere."""
+        """Call /global_localization: the robot may be anywhere."""
         call_service("/global_localization", Empty)
 
     def look(self, part: str, what: str) -> None:
-        """Waits a little, checks that all goes on, shows how things stand."""
+        """Waits a little, checks that everything still runs, shows progress."""
         before, began = self.now, time.monotonic()
         while True:
             time.sleep(LOOK_PERIOD)
@@ -114,13 +114,13 @@ class Rig:
         self.watch.records.show(self._progress, part, what)
 
     def set_pace(self, factor: float) -> None:
-        """So many simulated seconds a second."""
+        """Set the real-time factor."""
         now = call_service("/gazebo/get_physics_properties", GetPhysicsProperties)
         call_service("/gazebo/set_physics_properties", SetPhysicsProperties,
                      now.time_step, factor / now.time_step, now.gravity, now.ode_config)
 
     def set_particles(self, count: int) -> None:
-        """amcl has so many, never fewer."""
+        """Have amcl use constantly this many particles."""
         names = "min_particles", "max_particles"
         answer = call_service("/amcl/set_parameters", Reconfigure,
                             Config(ints=[IntParameter(name, count) for name in names]))
@@ -130,7 +130,7 @@ class Rig:
 
     @staticmethod
     def cpu() -> float:
-        """s of processor time of amcl since its start."""
+        """CPU time of amcl since its start, s."""
         return sum(process.cpu for process in processes() if process.name == "amcl")
 
     def _wait(self, what: str, condition: Callable[[], object]) -> object:

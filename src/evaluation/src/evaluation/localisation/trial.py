@@ -1,4 +1,4 @@
-"""`make localisation-trials`: amcl is to find the waffle in the house, and to keep track of it."""
+"""`make localisation-trials`: amcl must localise the waffle in the house, and track it."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ RUNS = {FINDING: find, KIDNAPS: kidnap, "tracking": track, "load": measure_load}
 
 @dataclass(frozen=True)
 class LocalisationCase(protocol.Case):
-    """One robot to be found, or one drive."""
+    """One robot to be localised, or one drive."""
 
     kind: str  # of RUNS
     amount: int  # its number, or s, simulated
 
 
 class LocalisationTrial(protocol.ReportedTrial):
-    """All cases in one simulator, which is brought up for the first of them."""
+    """All cases run in one simulator, which is started for the first of them."""
 
     program = "localisation_trials"
     does = ("Have amcl find the waffle in the house: from anywhere, and after it was carried away;"
@@ -81,17 +81,17 @@ class LocalisationTrial(protocol.ReportedTrial):
         self._rig.use_odometry(by_wheels=to_be_found or self._options.wheel_odometry)
 
     def run(self) -> Result:
-        """What the case's kind sees."""
+        """The result of the case, by its kind."""
         return RUNS[self._case.kind](self._rig, self._ground, self._options.seed, self._case.amount)
 
     def passed(self, results: Sequence[Result]) -> bool:
-        """Is all that was tried within the limits?"""
+        """Whether all results are within the limits."""
         shares = [sum(each.right for each in found) >= outcomes.LEAST_SHARES[kind] * len(found)
                   for kind, found in _sets(results).items()]
         return all(shares) and all(each.passed for each in _others(results))
 
     def table(self, results: Sequence[Result]) -> str:
-        """A row for each thing that was tried, with its limit."""
+        """A row for each kind of trial, with its limit."""
         rows = [("", "found", "wanted", "")]
         for kind, trials in _sets(results).items():
             took = [trial.took for trial in trials if trial.right]

@@ -1,4 +1,4 @@
-"""The trials: a robot anywhere, a robot carried away, a long drive, and what amcl uses."""
+"""The trials: global localisation, kidnapped robot, tracking, and amcl's CPU load."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from evaluation.localisation.rig import Rig
 from run_session.failure import RunError
 from trial_worlds.ground import Ground
 
-SETTLE = 15.0  # s, simulated, after a pose was told, until it counts
-CARRIED = 2.0  # m, at least, as the crow flies
-TOLD_OFF = (0.3, 0.3, 0.26)  # m along x and y, and rad, at most, of a pose that is told
-PERIOD = 1.0  # s, simulated, between two looks at whether it is found
+SETTLE = 15.0  # s, simulated, after an initial pose, that do not count
+CARRIED = 2.0  # m, least straight distance that the robot is moved
+TOLD_OFF = (0.3, 0.3, 0.26)  # m in x and y, and rad: largest error of an initial pose
+PERIOD = 1.0  # s, simulated, between two checks whether it is localised
 MOST_DRAWS = 1000
 PARTICLES = 2000
 SPEED, TURN_RATE = 0.22, 0.8  # m/s, rad/s
 WEAVE = 0.15  # rad/s, of the random turns on the way
 AHEAD, BESIDE = np.radians((25.0, 75.0))  # to either side
-NEAR_AHEAD, NEAR_BESIDE = 0.55, 0.28  # m from the laser: turn
-CLEAR_AHEAD = 0.8  # m, from which on it goes on
+NEAR_AHEAD, NEAR_BESIDE = 0.55, 0.28  # m from the laser, below which it turns
+CLEAR_AHEAD = 0.8  # m, above which it goes straight on again
 
 
 def find(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
-    """A robot somewhere in the house that knows nothing of where."""
+    """Global localisation: a robot at an unknown place in the house."""
     random = np.random.default_rng([seed, number, 0])
     place = _draw_place(ground, random)
     rig.put(place)
@@ -41,7 +41,7 @@ def find(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
 
 
 def kidnap(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
-    """A robot that knows where it is, and is carried elsewhere while it drives."""
+    """Kidnapped robot: a localised robot is moved elsewhere while it drives."""
     random = np.random.default_rng([seed, number, 1])
     _begin_known(rig, ground, random)
     with wandering(seed, rig.may_go_on):
@@ -52,7 +52,7 @@ def kidnap(rig: Rig, ground: Ground, seed: int, number: int) -> Trial:
 
 
 def track(rig: Rig, ground: Ground, seed: int, seconds: float) -> Tracking:
-    """A long drive; the pose it is told is off a little, and the first seconds do not count."""
+    """A long drive from a slightly wrong initial pose; the first SETTLE seconds do not count."""
     random = np.random.default_rng([seed, 0, 2])
     _begin_known(rig, ground, random)
     with wandering(seed, rig.may_go_on):
@@ -67,7 +67,7 @@ def track(rig: Rig, ground: Ground, seed: int, seconds: float) -> Tracking:
 
 
 def measure_load(rig: Rig, ground: Ground, seed: int, seconds: float) -> Load:
-    """What amcl uses with so many particles while simulated time goes as fast as real time."""
+    """CPU time of amcl with a constant number of particles, at real-time pace."""
     rig.set_pace(1.0)
     _begin_known(rig, ground, np.random.default_rng([seed, 0, 3]))
     rig.set_particles(PARTICLES)
@@ -88,7 +88,7 @@ def _begin_known(rig: Rig, ground: Ground, random: np.random.Generator) -> None:
 
 def _search(rig: Rig, kind: str, number: int, place: np.ndarray,
             random: np.random.Generator) -> Trial:
-    """Drives until it has been right for long enough, or can no more be in time."""
+    """Drives until the pose has been right for long enough, or no longer can be in time."""
     began = looked = rig.now
     since, what, part = None, "searching", f"{kind} {number}"
     with wandering(int(random.integers(1 << 31)), rig.may_go_on):
@@ -115,7 +115,7 @@ def _watch_for(rig: Rig, seconds: float, part: str, what: str) -> None:
 
 def _draw_place(ground: Ground, random: np.random.Generator,
                 away_from: np.ndarray | None = None) -> np.ndarray:
-    """A pose (3,) where the robot has room, in the world."""
+    """A random pose (3,) in the world where the robot has room, CARRIED away from `away_from`."""
     for _ in range(MOST_DRAWS):
         place = ground.draw_goals(1, int(random.integers(1 << 31)))[0]
         if away_from is None or np.linalg.norm(place[:2] - away_from[:2]) >= CARRIED:
@@ -124,7 +124,7 @@ def _draw_place(ground: Ground, random: np.random.Generator,
 
 
 class Steering:
-    """What to do about a scan. It needs no map and no pose, which a lost robot has not."""
+    """Chooses a velocity by a scan. It needs no map and no pose, as a lost robot has none."""
 
     def __init__(self, seed: int):
         self._random = np.random.default_rng([seed, 2])
@@ -132,7 +132,7 @@ class Steering:
 
     def choose(self, ranges: np.ndarray, bearings: np.ndarray, may_go_on: bool = True
                ) -> tuple[float, float]:
-        """m/s and rad/s, by ranges (N,), m, at bearings (N,), rad, -pi to pi, left is positive."""
+        """m/s and rad/s for ranges (N,), m, at bearings (N,), rad, -pi to pi, left is positive."""
         ahead = ranges[np.abs(bearings) < AHEAD].min()
         beside = ranges[np.abs(bearings) < BESIDE].min()
         wanted = CLEAR_AHEAD if self._turning else NEAR_AHEAD
@@ -148,7 +148,7 @@ class Steering:
 
 @contextlib.contextmanager
 def wandering(seed: int, may_go_on: Callable[[], bool]) -> Iterator[None]:
-    """A command for each scan meanwhile; `may_go_on` says whether straight ahead it may go."""
+    """A context in which each scan is answered by a command; `may_go_on`: may it go straight on?"""
     steering, commands = Steering(seed), rospy.Publisher("/cmd_vel", Twist, queue_size=1)
     ended = threading.Event()
 
@@ -161,7 +161,7 @@ def wandering(seed: int, may_go_on: Callable[[], bool]) -> Iterator[None]:
             np.minimum(ranges, message.range_max), (bearings + np.pi) % (2 * np.pi) - np.pi,
             may_go_on())
         commands.publish(command)
-        if ended.is_set():  # meanwhile: the robot stood already
+        if ended.is_set():  # meanwhile: the robot has already been stopped
             commands.publish(Twist())
 
     scans = rospy.Subscriber("/scan", LaserScan, take, queue_size=1)

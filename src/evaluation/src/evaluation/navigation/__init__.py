@@ -1,1 +1,1 @@
-"""`make navigate`: maps a house, starts again on that map, visits goals, and scores it all."""
+"""`make navigate`: maps a house, restarts with that map, visits goals, and scores it all."""

@@ -1,4 +1,4 @@
-"""Sends the robot from place to place by move_base, and tells what became of each way."""
+"""Sends the robot from goal to goal by move_base, and returns the result of each drive."""
 
 from __future__ import annotations
 
@@ -17,33 +17,33 @@ from nav_algorithms.poses import compose, invert, wrap_angle
 from run_session.simulator import pose_message
 from trial_worlds.ground import Ground
 
-LIMIT, LIMIT_FACTOR = 60.0, 5.0  # s, simulated, and times the shortest way at full speed, for a way
-CANCEL_LIMIT = 10.0  # s, simulated, for move_base to give a goal up
+LIMIT, LIMIT_FACTOR = 60.0, 5.0  # for a goal: s, simulated, plus a factor on the shortest time
+CANCEL_LIMIT = 10.0  # s, simulated, for move_base to cancel a goal
 TURN_RATE = 0.6  # rad/s
-STANDING = 0.3  # s, simulated, at a goal before it is looked where that is
+STANDING = 0.3  # s, simulated, at a goal before the pose is measured
 DONE = (actionlib.CommState.DONE, actionlib.CommState.LOST)
 TIME_IS_UP = "time is up"
 
-Look = Callable[[str], None]  # waits a little, checks that all goes on, shows how things stand
+Look = Callable[[str], None]  # waits a little, checks that everything still runs, shows progress
 
 
 @dataclass(frozen=True)
 class Way:
-    """From where the robot stood to a goal; m, s simulated, rad; truth unless it says otherwise."""
+    """A drive to a goal; m, s simulated, rad; true values unless noted otherwise."""
 
     goal: tuple[float, float, float]  # in the world's frame
-    reached: bool  # as move_base said
-    text: str  # move_base's
+    reached: bool  # as reported by move_base
+    text: str  # of move_base's result
     time: float
     driven: float
-    straight: float  # as the crow flies
-    shortest: float  # without touching a wall; inf: none
-    off: float  # from the goal at the end
+    straight: float  # straight-line distance
+    shortest: float  # shortest collision-free path; inf: none
+    off: float  # distance from the goal at the end
     off_yaw: float
 
 
 class Driver:
-    """Drives on a map that lies at `map_in_world` (3,), the pose of its frame in the world's."""
+    """Drives on a map; `map_in_world` (3,) is the pose of its frame in the world."""
 
     def __init__(self, watch: Watch, ground: Ground, look: Look, map_in_world: np.ndarray,
                  max_speed: float):
@@ -55,16 +55,16 @@ class Driver:
 
     @property
     def is_connected(self) -> bool:
-        """Does move_base take goals?"""
+        """Whether move_base's action server is connected."""
         return self._client.wait_for_server(rospy.Duration(0.01))
 
     @property
     def is_heard(self) -> bool:
-        """Is there a localisation that can be told a pose, and a drive?"""
+        """Whether there are subscribers to initial poses (localisation) and velocity commands."""
         return min(self._told.get_num_connections(), self._commands.get_num_connections()) > 0
 
     def drive_to(self, goal: np.ndarray, what: str) -> Way:
-        """Until move_base has done with the goal (3,), in the world's frame, or its time is up."""
+        """Send the goal (3,), in the world's frame; return when move_base is done or time is up."""
         records = self._watch.records
         start, began, before = records.true_pose, records.now, records.length
         shortest = self._ground.shortest_way(start, goal)
@@ -90,12 +90,12 @@ class Driver:
             float(np.linalg.norm(end[:2] - goal[:2])), float(abs(wrap_angle(end[2] - goal[2]))))
 
     def tell_pose(self, pose: np.ndarray) -> None:
-        """As rviz's 2D Pose Estimate does: roughly here, in the world's frame."""
+        """Publish an initial pose (3,), in the world's frame, as rviz's 2D Pose Estimate does."""
         on_map = compose(invert(self._map_in_world), pose)
         self._told.publish(told_pose(on_map, self._watch.records.now))
 
     def turn_round(self, what: str) -> None:
-        """Once on the spot, by simulated time."""
+        """Turn once on the spot, timed by simulated time."""
         records = self._watch.records
         until = records.now + 2 * np.pi / TURN_RATE
         command = Twist()
@@ -106,7 +106,7 @@ class Driver:
         self._commands.publish(Twist())
 
     def _let_stand(self) -> None:
-        """Until it is seen where the robot has come to."""
+        """Wait until the robot's resting pose has been observed."""
         until = self._watch.records.now + STANDING
         while self._watch.records.now < until:
             self._look("standing")

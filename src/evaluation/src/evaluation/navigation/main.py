@@ -1,4 +1,4 @@
-"""`make navigate`: map, start again, localise, visit goals, end all, report."""
+"""`make navigate`: map, restart, localise, visit goals, end all, report."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from run_session.launch import Launched
 
 
 class NavigationRun(LiveDrive):
-    """One run: who takes part in it and what was found."""
+    """One run: its parts and results."""
 
     program = "navigate"
     does = ("Map a house, start again on that map, visit goals in it; all without a screen. Scores"
@@ -73,7 +73,7 @@ class NavigationRun(LiveDrive):
         self._watch: Watch | None = None
 
     def bring_up(self, launched: Launched) -> None:
-        """Who looks on; each part brings up its own nodes."""
+        """Start the observers; each part starts its own nodes."""
         self._watch = Watch()
         self._watch.start()
         if self.options.video:
@@ -81,7 +81,7 @@ class NavigationRun(LiveDrive):
             self.film.start()
 
     def watch(self, launched: Launched) -> Outcome:
-        """Both parts, or the second on a map that is there."""
+        """Run both parts, or only the second, on an existing map."""
         everybody = self, self._ground, self._watch, launched
         map_file = self.options.map
         if map_file is None:
@@ -96,7 +96,7 @@ class NavigationRun(LiveDrive):
         return ("not passed", "; ".join(faults)) if faults else ("passed", "")
 
     def end(self) -> None:
-        """Look no more."""
+        """Stop observing."""
         if self._watch is not None:
             self._watch.stop()
 
@@ -122,7 +122,7 @@ class NavigationRun(LiveDrive):
 
 
 def _titles(options: argparse.Namespace, result: Result) -> tuple[str, str]:
-    """Headline and figures for the picture."""
+    """Title and subtitle (with figures) of the picture."""
     reached = sum(way.reached for way in result.navigation.ways) if result.navigation else 0
     figures = []
     if result.mapping:

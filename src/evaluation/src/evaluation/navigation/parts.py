@@ -1,4 +1,4 @@
-"""The run's two parts: the mapping round, and the goals on the map that it made."""
+"""The run's two parts: mapping, and goals on that map."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LOOK_PERIOD = 0.05  # s, wall
 END_LIMIT = 30.0  # s, wall, for all nodes of one launch file to end
 SAVE_LIMIT = 60.0  # s, wall, for map_saver
 LAST_MAP_LIMIT = 3.0  # s, simulated; slam_gmapping's map comes every 2 s
-TOLD_OFF, TOLD_OFF_YAW = 0.3, 0.26  # m along x and y, and rad, at most, of the told first pose
+TOLD_OFF, TOLD_OFF_YAW = 0.3, 0.26  # m in x and y, and rad: largest error of the initial pose
 SIMULATOR = ("roslaunch", "evaluation", "house.launch")
 SLAM = ("roslaunch", "turtlebot3_slam", "turtlebot3_slam.launch", "slam_methods:=gmapping",
         "open_rviz:=false")
@@ -34,7 +34,7 @@ NAVIGATION = ("roslaunch", "evaluation", "navigation.launch")
 
 
 class Part:
-    """What both parts do: start programs, wait for them, look after them, end them."""
+    """Shared by both parts: start programs, wait for them, supervise them, end them."""
 
     name = ""
 
@@ -47,7 +47,7 @@ class Part:
         self._cpu: CpuMeter | None = None
 
     def _start(self, *commands: tuple[str, ...]) -> None:
-        """The simulator first; what is there of it is known anew."""
+        """Start programs, the simulator first, with new records."""
         self._watch.begin()
         house, options = self._options.house, self._options
         x, y, yaw = house.start
@@ -74,7 +74,7 @@ class Part:
         return self._driver
 
     def _begin(self) -> None:
-        """From here on the robot may drive; time and processors are counted."""
+        """From here on the robot may drive; time and CPU use are counted."""
         self._cpu = CpuMeter()
         self._began, self._begin_time = time.monotonic(), self._watch.records.now
         self._watch.records.begun = self._begin_time
@@ -88,14 +88,14 @@ class Part:
         return score.Pace(simulated, wall, share)
 
     def _look(self, what: str) -> None:
-        """Waits a little, checks that all goes on, shows how things stand."""
+        """Waits a little, checks that everything still runs, shows progress."""
         time.sleep(LOOK_PERIOD)
         records = self._watch.records
         self._run.check_time(self._launched, records.now)
         records.show(self._progress, self.name, what)
 
     def end(self) -> None:
-        """Ends this part's programs, those that were started last first."""
+        """Ends this part's programs in reverse order of starting."""
         for child in reversed(self._children):
             self._progress.status(f"{self.name}: ending {child.name}")
             self._launched.end(child, END_LIMIT)
@@ -103,17 +103,17 @@ class Part:
 
 
 class MappingPart(Part):
-    """The mapping round: move_base on the map that slam_gmapping is making."""
+    """Mapping: move_base drives on the map that slam_gmapping is building."""
 
     name = "mapping"
 
     def run(self, result: score.Result) -> None:
-        """Drives the round and saves the map; what was found stands in `result`, always."""
+        """Drives to the waypoints and saves the map; `result` is filled even if this fails."""
         self._start(SLAM, MOVE_BASE)
         watch, house = self._watch, self._options.house
         self._wait_for("the first map and the transform map to odom",
                        lambda: watch.map is not None and watch.records.believed)
-        # Where somebody who clicks into rviz would see that the map's frame lies.
+        # The map frame's pose, as a user who clicks in rviz would see it.
         result.map_in_world = compose(watch.records.true_pose, invert(watch.records.believed_pose))
         driver = self._connect(result.map_in_world)
         ways = []
@@ -135,7 +135,7 @@ class MappingPart(Part):
         keep_map(made, result.map_in_world)
 
     def _save(self) -> Path:
-        """The map of the whole round, by map_saver: its YAML file."""
+        """Save the complete map by map_saver; returns its YAML file."""
         until = self._watch.records.now + LAST_MAP_LIMIT
         while self._watch.records.now < until:
             self._look("waiting for the last map")
@@ -146,12 +146,12 @@ class MappingPart(Part):
 
 
 class NavigationPart(Part):
-    """The goals: localisation on the saved map, from a first pose that is a little wrong."""
+    """Goals: localisation on the saved map, from a slightly wrong initial pose."""
 
     name = "goals"
 
     def run(self, result: score.Result, map_file: str, goals: np.ndarray) -> None:
-        """Visits the goals (N, 3), in the world's frame; `result` keeps what was found, always."""
+        """Visits the goals (N, 3), in the world's frame; `result` is filled even if this fails."""
         self._start((*NAVIGATION, f"map_file:={map_file}"))
         watch = self._watch
         self._wait_for("the map and the transform map to odom",
@@ -174,7 +174,7 @@ class NavigationPart(Part):
                 localisation=score.localisation(told, errors))
 
     def _tell_pose(self, driver: Driver) -> tuple[float, float]:
-        """Tells a pose that is off as the seed says; returns how far, m and rad."""
+        """Publishes an initial pose with an error drawn from the seed; returns it, m and rad."""
         generator = np.random.default_rng([self._options.seed, 1])
         off = generator.uniform(-1, 1, 3) * (TOLD_OFF, TOLD_OFF, TOLD_OFF_YAW)
         true = self._watch.records.true_pose

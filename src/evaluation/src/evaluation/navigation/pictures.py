@@ -1,4 +1,4 @@
-"""run.mp4: camera beside map, scan, plan and way; map.png: map, true walls, all ways, goals."""
+"""run.mp4: camera beside map, scan, plan and path; map.png: map, true walls, all paths, goals."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from trial_worlds.ground import Ground
 
 CAMERA = "/camera/rgb/image_raw"
 LASER = np.array([-0.064, 0.0, 0.0])  # in base_footprint
-PERIOD = 1.0  # s, simulated, between two pictures: the film runs at ten times the speed
-LOOK_PERIOD, VIEW_TIME = 0.1, 1.0  # s, wall; the latter for the camera's picture
+PERIOD = 1.0  # s, simulated, between two frames: the video runs at ten times the speed
+LOOK_PERIOD, VIEW_TIME = 0.1, 1.0  # s, wall; the latter to wait for a camera image
 PLAN_PX = 760
 SCAN, PLANNED, DRIVEN = "#ff5050", "#fae65a", lap_colour(0)
 CLEAR, TRUE_WALL, GOAL = "#363a42", "#3cbe78", "#fac846"
@@ -36,11 +36,11 @@ PATHS = (("mapping", "driven while mapping", lap_colour(0)),
 
 
 class Film(FilmFile):
-    """Adds a picture in PERIOD (s, simulated) while a part of the run goes on."""
+    """Adds a frame every PERIOD (s, simulated) during a part of the run."""
 
     def __init__(self, path: Path, ground: Ground, watch: Watch, result: Result):
         super().__init__(path)
-        self.title = ""  # what is going on now
+        self.title = ""  # what the run is doing now
         self._watch, self._result = watch, result
         walls = ground.walls
         low = np.array(walls.origin)
@@ -52,11 +52,11 @@ class Film(FilmFile):
         self._thread = threading.Thread(target=self._film, daemon=True, name="film")
 
     def start(self) -> None:
-        """Begin to film."""
+        """Begin to record."""
         self._thread.start()
 
     def close(self) -> str:
-        """Finish the file, if there is any picture; why it is not whole, or ""."""
+        """Finish the file, if it has any frame; returns why it is incomplete, or ""."""
         self.stop()
         if self._thread.ident is not None:
             self._thread.join()
@@ -70,10 +70,10 @@ class Film(FilmFile):
             number, last = int(records.now / PERIOD), self._number
             if records.truth and number > last:
                 self._number = number
-                # One picture: while somebody subscribes, the camera draws thirty a second.
+                # Only one image: while subscribed to, the camera renders thirty a second.
                 with contextlib.suppress(rospy.ROSException):
                     self._view = rospy.wait_for_message(CAMERA, Image, VIEW_TIME)
-                # The film keeps simulated time even where pictures are missing.
+                # The video keeps simulated time even where images are missing.
                 self._add(self._page(records), 1 if last < 0 else min(number - last, LONGEST_GAP))
 
     def _page(self, records: Records) -> np.ndarray:
@@ -83,9 +83,9 @@ class Film(FilmFile):
         return side_by_side(view, self._plan(records), words, PERIOD)
 
     def _plan(self, records: Records) -> np.ndarray:
-        """The map as it is now, on it what the robot sees, wants and has done."""
+        """The current map with scan, plan and the path driven."""
         watch, plan, there = self._watch, self._floor.copy(), self._result.map_in_world
-        grid, hits = watch.map, watch.hits  # as they are now: they may be forgotten at any moment
+        grid, hits = watch.map, watch.hits  # kept: other threads may reset the attributes
         if grid is not None:
             _lay_cells(plan, grid, there)
         plan.line(np.array(records.truth).reshape(-1, 4)[:, 1:3], DRIVEN, 2)
@@ -98,11 +98,11 @@ class Film(FilmFile):
 
 
 def _lay_cells(plan: Plan, grid: OccupancyGrid, grid_in_world: np.ndarray) -> None:
-    """Unknown cells have the floor's colour."""
+    """Draw the map's cells; unknown ones have the floor's colour."""
     cells = np.full((*grid.cells.shape, 3), bgr(FLOOR), np.uint8)
     cells[(grid.cells >= FREE) & (grid.cells < OCCUPIED_FROM)] = bgr(CLEAR)
     cells[grid.cells >= OCCUPIED_FROM] = bgr(TEXT)
-    # Pixel (0, 0) of the cells has its middle half a cell within the grid.
+    # The middle of pixel (0, 0) of the cells lies half a cell inside the grid.
     corners = np.array([(0.0, 0.0), (100.0, 0.0), (0.0, 100.0)])
     points = (corners + 0.5) * grid.resolution + grid.origin
     there = plan.to_px(transform_points(np.asarray(grid_in_world), points)) - 0.5
@@ -141,7 +141,7 @@ def map_picture(ground: Ground, result: Result, title: str, subtitle: str) -> np
 
 
 def _draw_cells(axes: object, grid: OccupancyGrid, grid_in_world: np.ndarray) -> None:
-    """Free and occupied cells, turned to where the map lies in the world."""
+    """Draw free and occupied cells, transformed into the world's frame."""
     from matplotlib.colors import ListedColormap
 
     shade = np.zeros(grid.cells.shape)

@@ -1,4 +1,4 @@
-"""The figures of a run, and the table at its end."""
+"""A run's figures, and its final table."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COLUMNS = ("goal", "x", "y", "reached", "s", "straight s", "shortest s", "m", "o
 
 
 def summarize(options: argparse.Namespace, outcome: tuple[str, str], result: Result) -> dict:
-    """All figures; lengths in m, times in simulated s but wall_s, angles in degrees."""
+    """All figures; lengths in m, times in simulated s except wall_s, angles in degrees."""
     speed = options.house.max_speed
     mapping, navigation = result.mapping, result.navigation
     return {
@@ -37,7 +37,7 @@ def summarize(options: argparse.Namespace, outcome: tuple[str, str], result: Res
 
 
 def lines(options: argparse.Namespace, result: Result) -> list[str]:
-    """The table of goals and what there is to say of map and localisation."""
+    """The table of goals, and lines on map and localisation."""
     found = []
     if result.mapping:
         mapping = result.mapping

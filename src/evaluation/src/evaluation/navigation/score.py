@@ -19,9 +19,9 @@ from trial_worlds.true_map import visible_walls
 MOST_ATE = 0.05  # m
 LEAST_AGREEMENT = 0.95  # share
 MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # m and degrees, mean error of localisation
-MOST_MISS, MOST_MISS_DEG = 0.2, 20.0  # m and degrees, beside a goal that is called reached
-MOST_UNSEEN = 1.0  # s, simulated, between two looks; it drives 26 cm meanwhile
-POSE_STEP = 10  # every so many poses are asked what the laser saw from there
+MOST_MISS, MOST_MISS_DEG = 0.2, 20.0  # m and degrees from a goal that is reported reached
+MOST_UNSEEN = 1.0  # s, simulated, between two contact checks, in which it may drive 26 cm
+POSE_STEP = 10  # every tenth pose is checked for what the laser saw from there
 
 
 @dataclass(frozen=True)
@@ -40,20 +40,20 @@ class Pace:
 
 @dataclass(frozen=True, kw_only=True)
 class Leg:
-    """What was seen of one part of the run."""
+    """The figures of one part of the run."""
 
     name: ClassVar[str]  # in words
-    way: ClassVar[str]  # what one of its ways leads to
+    way: ClassVar[str]  # what one of its drives leads to
 
     ways: list[Way]
     contacts: list[Contact]
     nearest: float  # m, smallest gap to anything
-    unseen: float  # s, simulated, between two looks whether it touches something, at most
+    unseen: float  # s, simulated: longest time between two contact checks
     driven: float  # m
     pace: Pace
 
     def common_faults(self) -> list[str]:
-        """What is beyond the limits of both parts, in words."""
+        """Violated limits that both parts have, in words."""
         found = []
         for number, way in enumerate(self.ways, start=1):
             name = f"{self.way} {number} ({way.goal[0]:.2f}, {way.goal[1]:.2f})"
@@ -71,14 +71,14 @@ class Leg:
 
 
 def seen_of(records: Records) -> dict:
-    """The fields of a part that its records hold."""
+    """The fields of a part that come from its records."""
     return dict(contacts=records.contacts, nearest=records.nearest[0],
                 unseen=float(records.longest_unseen), driven=records.length)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mapping(Leg):
-    """The mapping round."""
+    """The mapping part."""
 
     name, way = "mapping", "way-point"
 
@@ -88,7 +88,7 @@ class Mapping(Leg):
 
     @property
     def faults(self) -> list[str]:
-        """What is beyond the limits, in words."""
+        """Violated limits, in words."""
         found = []
         if self.trajectory.ate_rmse > MOST_ATE:
             found.append(f"mapping: trajectory error {_cm(self.trajectory.ate_rmse)}, "
@@ -102,9 +102,9 @@ class Mapping(Leg):
 
 @dataclass(frozen=True)
 class Localisation:
-    """How far the believed pose was from the true one; m and rad."""
+    """Errors of the estimated pose; m and rad."""
 
-    told: tuple[float, float] | None  # the first pose that it was told, and how wrong that was
+    told: tuple[float, float] | None  # of the initial pose that was given
     found: tuple[float, float]  # after the turn on the spot
     mean: tuple[float, float]  # on the way to the goals
     largest: tuple[float, float]
@@ -112,7 +112,7 @@ class Localisation:
 
 @dataclass(frozen=True, kw_only=True)
 class Navigation(Leg):
-    """The goals."""
+    """The part with the goals."""
 
     name, way = "on the way to the goals", "goal"
 
@@ -120,7 +120,7 @@ class Navigation(Leg):
 
     @property
     def faults(self) -> list[str]:
-        """What is beyond the limits, in words."""
+        """Violated limits, in words."""
         off, off_deg = self.localisation.mean[0], np.degrees(self.localisation.mean[1])
         if off <= MOST_OFF and off_deg <= MOST_OFF_DEG:
             return self.common_faults()
@@ -130,7 +130,7 @@ class Navigation(Leg):
 
 @dataclass
 class Result:
-    """All of a run, or as much as there was before it ended."""
+    """The results of a run, or of as much as was run before it ended."""
 
     map: OccupancyGrid | None = None
     map_in_world: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -140,15 +140,15 @@ class Result:
 
     @property
     def faults(self) -> list[str]:
-        """What is beyond the limits, in words."""
+        """Violated limits, in words."""
         return [fault for part in (self.mapping, self.navigation) if part for fault in part.faults]
 
 
 def score_mapping(ground: Ground, built: OccupancyGrid, records: Records, angles: np.ndarray,
                   reach: float, ways: list[Way], pace: Pace) -> Mapping:
-    """The map against the walls that a laser with these beams (rad) and reach (m) could see.
+    """Compare the map with the walls that a laser with these beams (rad) and reach (m) could see.
 
-    Raises RunError where true and believed poses of the same moments were never seen.
+    Raises RunError if there are no true and estimated poses of the same times.
     """
     _, believed, true = records.moments()
     if not len(true):
@@ -163,7 +163,7 @@ def score_mapping(ground: Ground, built: OccupancyGrid, records: Records, angles
 
 
 def localisation(told: tuple[float, float] | None, errors: np.ndarray) -> Localisation:
-    """Of errors (N, 2) on the way to the goals; the first of them is what was found."""
+    """From errors (N, 2) on the way to the goals; the first one follows the turn on the spot."""
     if not len(errors):
         errors = np.full((1, 2), np.inf)
     return Localisation(told, tuple(errors[0].tolist()), tuple(errors.mean(axis=0).tolist()),

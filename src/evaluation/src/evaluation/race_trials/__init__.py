@@ -1,1 +1,1 @@
-"""Many laps of the racecar, each with its own start, noise and light: is its follower any good?"""
+"""Tests racecar followers over many laps, each with its own start, noise and light."""

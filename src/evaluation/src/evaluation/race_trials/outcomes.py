@@ -1,4 +1,4 @@
-"""What became of the laps: one by one, and by follower and set."""
+"""The laps' results: one by one, and by follower and set."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from evaluation.trial.report import grouped
 
 @dataclass(frozen=True, kw_only=True)
 class Lap(LapDrive):
-    """One lap, or how far it came."""
+    """One lap, complete or not."""
 
     least_speed = 1.5
 
     follower: str
     set: str
     track: str
-    time: float | None  # s, of a closed lap
-    folder: str  # below that of all results
+    time: float | None  # s, of a completed lap
+    folder: str  # below the folder for results
 
     @property
     def name(self) -> str:
-        """Of its case."""
+        """Its case's name."""
         return f"{self.follower} {self.set} {self.seed}"
 
     @property
     def line(self) -> str:
-        """On one line."""
+        """A one-line summary."""
         said = self.disturbance
         start = f"start {said.sideways * 100:+.0f} cm {said.turn * 57.2958:+.0f}°"
         drawn = f"{start}, noise {said.camera_noise:.3f}, light x{said.light:.2f}"
@@ -43,9 +43,9 @@ COLUMNS = {"follower": lambda each: each["follower"], "laps on": lambda each: ea
 
 
 def summarize(laps: Sequence[Lap]) -> list[dict]:
-    """One for each follower and set, in the order in which they were driven.
+    """A summary for each follower and set, in the order in which they were driven.
 
-    `worst_seed`: of a lap that was not closed, else of the farthest beside the line in the mean.
+    `worst_seed`: of a lap that was not completed, else of that with the largest RMS error.
     """
     groups = grouped(laps, lambda lap: (lap.follower, lap.set))
     return [{**summary(group), "follower": follower, "set": name, "worst_seed": max(

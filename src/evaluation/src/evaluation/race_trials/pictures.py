@@ -16,7 +16,7 @@ COLOURS = ("#1b6ca8", "#c9782f", "#7a8b99", "#3a8f5c")
 LIMIT_COLOUR = "#c0392b"
 TILE = (4.4, 3.6)  # inches, of a path
 
-# Label, its value, the limit, which side of it is good.
+# Label, value, limit, and which side of the limit is good.
 ROWS: tuple[tuple[str, Callable[[Lap], float], float, str], ...] = (
     ("RMS beside the line, cm", lambda lap: lap.rms_lateral * 100, Lap.most_rms * 100, "at most"),
     ("mean speed, m/s", lambda lap: lap.mean_speed, Lap.least_speed, "at least"),
@@ -24,7 +24,7 @@ ROWS: tuple[tuple[str, Callable[[Lap], float], float, str], ...] = (
 
 
 def write_chart(laps: Sequence[Lap], path: Path) -> None:
-    """A column for each set of laps; a lap that was not closed is a cross."""
+    """A column for each set of laps; a cross marks a lap that was not completed."""
     sets = grouped(laps, lambda lap: lap.set)
     with chart(path, len(ROWS), len(sets), sharey="row") as grid:
         for column, (name, found) in enumerate(sets.items()):
@@ -34,7 +34,7 @@ def write_chart(laps: Sequence[Lap], path: Path) -> None:
                 axes.set_ylabel(label, fontsize=9)
             grid[0, column].set_title(name, fontsize=10)
             grid[-1, column].set_xlabel("seed", fontsize=9)
-        for axes in grid[:, 0]:  # its row follows
+        for axes in grid[:, 0]:  # the rest of the row shares it
             axes.set_ylim(bottom=0)
         grid[0, 0].legend(fontsize=8)
 
@@ -58,7 +58,7 @@ def write_path_sheet(laps: Sequence[Lap], out: Path) -> Path:
 
 
 def _draw_path(out: Path, axes: object, lap: Lap) -> tuple[str, bool]:
-    """The lap's path, and how it went."""
+    """Draw the lap's path; returns its caption, and whether it was within the limits."""
     picture = cv2.imread(str(out / lap.folder / "path.png"), cv2.IMREAD_REDUCED_COLOR_2)
     if picture is not None:
         axes.imshow(picture[..., ::-1])

@@ -1,4 +1,4 @@
-"""`make race-trials`: laps as `make race` drives them, each disturbed in its own way."""
+"""`make race-trials`: laps as in `make race`, each with its own disturbance."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from run_session.failure import RunError
 from run_session.resources import find_package
 
 RACETRACK, RANDOM_TRACKS = "racetrack", "random tracks"  # the two sets of laps
-LARGEST_SEED = 100_000_000  # a larger one is none for course_run
+LARGEST_SEED = 100_000_000  # course_run takes no larger ones
 FOLLOWERS = ("lane_follow.py", "lane_follow_p.py")
 LONGEST_LAP = 120.0  # s, simulated
 
@@ -38,7 +38,7 @@ class RaceCase(Case):
 
 
 class RaceTrial(LapTrial):
-    """Laps on the racetrack and on random tracks; the first follower must keep the limits."""
+    """Laps on the racetrack and on random tracks; the first follower must be within the limits."""
 
     program = "race_trials"
     does = ("Drive many laps, each with a start, camera noise and light of its own; compare"
@@ -62,7 +62,7 @@ class RaceTrial(LapTrial):
         self._first = options.followers[0]
 
     def cases(self, options: argparse.Namespace) -> list[RaceCase]:
-        """Followers take turns."""
+        """The followers alternate."""
         followers = tuple(dict.fromkeys(options.followers))
         return [RaceCase(f"{follower} {kind} {seed}", kind, seed, follower)
                 for kind, first, count in ((RACETRACK, options.first_seed, options.seeds),
@@ -101,12 +101,12 @@ class RaceTrial(LapTrial):
 
 
 def racetrack() -> Venue:
-    """The one in racecar_description."""
+    """The racetrack of racecar_description."""
     return _venue("racetrack", find_package("racecar_description"))
 
 
 def random_track(seed: int, out: Path) -> Venue:
-    """The seed's track, as make_track makes it, made anew below `out`."""
+    """Generate the seed's track below `out`, as make_track does."""
     course, _ = from_seed(seed, Wishes(f"random_{seed}"))
     write_course(course, out)
     return _venue(course.name, out)

@@ -1,1 +1,1 @@
-"""The film of a run, and the files of courses."""
+"""The video of a run, and the course files."""

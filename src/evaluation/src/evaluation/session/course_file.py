@@ -1,4 +1,4 @@
-"""Courses, from the files of courses/."""
+"""Reads the course files in courses/."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from run_session.resources import find_package, load_record
 
 
 def load_course(name: str) -> Course:
-    """Course `name` of courses/, or the file of that path; RunError names file and key."""
+    """Course `name` of courses/, or the file at that path; a RunError names file and key."""
     return load_record(Course, name, find_package("evaluation") / "courses")
 
 
 def drivers(course: Course) -> list[str]:
-    """Names of the files that drive on it."""
+    """Names of the files that can drive on it."""
     return sorted(path.name for path in course.follower_files() if course.drives_by
                   in path.read_text(encoding="utf-8", errors="replace"))

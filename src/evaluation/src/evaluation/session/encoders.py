@@ -1,4 +1,4 @@
-"""Writes pictures into an mp4: H.264 through ffmpeg where it is installed, else by OpenCV."""
+"""Encodes frames as mp4: H.264 by ffmpeg if installed, else by OpenCV."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-FINISH_TIME = 20.0  # s, wall, for the encoder to end
-WRITE_TIME = 10.0  # s, wall, for it to take a picture
+FINISH_TIME = 20.0  # s, wall, for the encoder to finish
+WRITE_TIME = 10.0  # s, wall, for it to accept a frame
 
 
 class FfmpegEncoder:
-    """H.264 that every player shows, by Debian's ffmpeg; pictures are (height, width, 3), BGR."""
+    """H.264 that every player supports, by Debian's ffmpeg; frames are (height, width, 3), BGR."""
 
     codec = "H.264 by ffmpeg"
 
     def __init__(self, path: Path, width: int, height: int, rate_hz: int):
-        # -xerror: without it, no room for the end of the film is no failure.
+        # -xerror: otherwise a full disk at the end of the video is not reported as a failure.
         words = ("nice -n 10 ffmpeg -xerror -loglevel error -y -f rawvideo -pixel_format bgr24"
                  f" -video_size {width}x{height} -framerate {rate_hz} -i - -c:v libx264"
                  " -preset ultrafast -crf 24 -threads 1 -pix_fmt yuv420p -movflags +faststart")
-        # It ends when its input does: the thread that starts it may end long before the film.
+        # It ends when its input does: the thread that starts it may end long before the video.
         self._said = tempfile.TemporaryFile()  # noqa: SIM115 (closed with the object)
         self._process = subprocess.Popen(
             [*words.split(), str(path)], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
@@ -39,7 +39,7 @@ class FfmpegEncoder:
         return self._process.pid
 
     def write(self, page: np.ndarray) -> None:
-        """Add a picture; after a failure nothing more, the run and its score are not touched."""
+        """Add a frame; after a failure, do nothing: the run and its score are not affected."""
         if self._fault:
             return
         pipe, rest = self._process.stdin, memoryview(page.tobytes())
@@ -54,7 +54,7 @@ class FfmpegEncoder:
             self._fault = self._reason()
 
     def close(self) -> str:
-        """Finish the file; why it is not whole, or "". Ctrl-C ends the encoder at once."""
+        """Finish the file; returns why it is incomplete, or "". Ctrl-C ends the encoder at once."""
         self._process.stdin.close()
         try:
             self._process.wait(FINISH_TIME)
@@ -67,18 +67,18 @@ class FfmpegEncoder:
         return self._fault
 
     def kill(self) -> None:
-        """End it at once, also while another thread writes."""
+        """Kill the encoder, even while another thread writes."""
         self._process.kill()
         self._process.wait()
 
     def _reason(self) -> str:
-        """Its first words, which name the cause."""
+        """Its first line of output, which names the cause."""
         self._said.seek(0)
         return f"ffmpeg: {self._said.readline().decode(errors='replace').strip() or 'it failed'}"
 
 
 class OpenCvEncoder:
-    """MPEG-4 by OpenCV itself, where there is no ffmpeg."""
+    """MPEG-4 by OpenCV itself, if there is no ffmpeg."""
 
     codec = "MPEG-4 by OpenCV"
 
@@ -91,10 +91,10 @@ class OpenCvEncoder:
         self._writer.write(page)
 
     def close(self) -> str:
-        """Finish the file; why it is not whole, or ""."""
+        """Finish the file; returns why it is incomplete, or ""."""
         self._writer.release()
         whole = cv2.VideoCapture(str(self._path)).isOpened()
         return "" if whole else "OpenCV could not write it: is the disk full?"
 
     def kill(self) -> None:
-        """There is no process that could go on."""
+        """Nothing to do: there is no process."""

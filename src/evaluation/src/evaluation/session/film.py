@@ -1,4 +1,4 @@
-"""The films: files that are there once there is a page, and take no more once they are ended."""
+"""The videos: a file is created with the first frame, and takes no more once it is ended."""
 
 from __future__ import annotations
 
@@ -21,38 +21,38 @@ from evaluation.plan import write_text
 from evaluation.session.encoders import FfmpegEncoder, OpenCvEncoder
 
 FILM_RATE_HZ = 10
-# s, simulated, between two pictures: a film runs at 2 times the speed, of a fast drive at 8
+# s, simulated, between two frames: videos run at 2 times the speed, of fast drives at 8
 FILM_PERIOD, FAST_FILM_PERIOD = 0.2, 0.8
-VIEW_PX = (640, 360)  # width, height; a third of the camera's, which is quick to make
-BAR_PX = 44  # of text, above
-LONGEST_GAP = 30 * FILM_RATE_HZ  # pictures that a pause in the camera may add to the film
-LONGEST_WAIT = 1.0  # s, wall, in which no picture is looked at
+VIEW_PX = (640, 360)  # width, height; a third of the camera's, which is quick to compute
+BAR_PX = 44  # height of the text bar at the top
+LONGEST_GAP = 30 * FILM_RATE_HZ  # frames that a pause in the camera may add to the video
+LONGEST_WAIT = 1.0  # s, wall, in which no image is taken
 
 
 class FilmFile:
-    """What all films share; those that film a drive draw its pages and add them."""
+    """Base class of all videos; subclasses draw the frames ("pages") and add them."""
 
     def __init__(self, path: Path):
-        # What is not whole has a name that says so, whoever is killed meanwhile.
+        # An incomplete file has a name that says so, whichever process is killed.
         self._path, self._part = path, path.with_suffix(f".part{path.suffix}")
         self._ended, self._lock = threading.Event(), threading.Lock()
         self._writer: FfmpegEncoder | OpenCvEncoder | None = None
-        self.codec = ""  # once there is a page
+        self.codec = ""  # set with the first frame
 
     @property
     def process_id(self) -> int | None:
-        """Of the encoder, if it is a process."""
+        """Process id of the encoder, if it is a process."""
         return getattr(self._writer, "process_id", None)
 
     def start(self) -> None:
-        """Begin to film."""
+        """Begin to record."""
 
     def stop(self) -> None:
-        """Take no more pictures."""
+        """Take no more frames."""
         self._ended.set()
 
     def close(self) -> str:
-        """Finish the file, if any picture came; why it is not whole and so was removed, or ""."""
+        """Finish the file, if any frame came; returns why it was incomplete and removed, or ""."""
         self.stop()
         fault = "interrupted"
         try:
@@ -69,7 +69,7 @@ class FilmFile:
         return fault
 
     def _add(self, page: np.ndarray, times: int = 1) -> None:
-        """Write a page, (height, width, 3) BGR, unless the film has ended; all of one size."""
+        """Write a frame, (height, width, 3) BGR, unless the video has ended; all of one size."""
         with self._lock:
             if self._ended.is_set():
                 return
@@ -83,30 +83,30 @@ class FilmFile:
 
 
 class CameraFilm(FilmFile):
-    """Adds one picture of a topic in `period` (s, simulated); works in that topic's thread.
+    """Adds one image of a topic every `period` (s, simulated); works in that topic's thread.
 
-    The callback waits until the next picture is nearly due, so the rest of the 190 MB a simulated
-    second that a camera sends is dropped by the publisher's queue and never copied here.
+    The callback waits until the next image is nearly due, so that most of the 190 MB that a camera
+    sends in a simulated second are dropped by the publisher's queue and never copied here.
     """
 
     def __init__(self, path: Path, topic: str, period: float):
         super().__init__(path)
         self._topic, self._period = topic, period
-        self._last: tuple[int, float] | None = None  # the last picture's number and s, wall
+        self._last: tuple[int, float] | None = None  # the last frame's number and s, wall
 
     @abstractmethod
     def page(self, view: np.ndarray, now: float) -> np.ndarray:
-        """The film's picture, BGR, with what the camera sees (fits into VIEW_PX) at a time, s."""
+        """The frame, BGR, with the camera image (fits into VIEW_PX) at a time, s."""
 
     def start(self) -> None:
-        """Begin to film. On a busy machine the encoder takes seconds to load: it begins now."""
-        with contextlib.suppress(OSError):  # the drive goes on; the first page tries again
+        """Begin to record. Starts the encoder at once: it takes seconds on a busy machine."""
+        with contextlib.suppress(OSError):  # the drive goes on; the first frame tries again
             self._add(self.page(np.zeros((*VIEW_PX[::-1], 3), np.uint8), 0.0), times=0)
-        # 1 MiB at a time: with the 16 MiB that a follower wants, a picture took twice the time.
+        # 1 MiB at a time: with the 16 MiB that a follower needs, an image took twice the time.
         rospy.Subscriber(self._topic, Image, self.take, queue_size=1, buff_size=2**20)
 
     def take(self, message: Image) -> None:
-        """Add a picture if one is due, and wait until the next one nearly is."""
+        """Add an image if one is due, and wait until the next one nearly is."""
         began, now = time.monotonic(), message.header.stamp.to_sec()
         number = int(now / self._period + 1e-6)  # stamps are rounded
         last, last_began = self._last or (number - 1, began)
@@ -117,15 +117,15 @@ class CameraFilm(FilmFile):
         if message.encoding == "rgb8":
             view = cv2.cvtColor(view, cv2.COLOR_RGB2BGR)
         page = self.page(view, now)
-        # The film keeps simulated time even where pictures are missing.
+        # The video keeps simulated time even where images are missing.
         self._add(page, min(max(number - last, 1), LONGEST_GAP))
-        pace = (began - last_began) / max(number - last, 1)  # s, wall, from one picture to the next
+        pace = (began - last_began) / max(number - last, 1)  # s, wall, from one frame to the next
         self._ended.wait(min(max(0.0, began + 0.8 * pace - time.monotonic()), LONGEST_WAIT))
 
 
 def side_by_side(view: np.ndarray | None, plan: np.ndarray, words: Mapping[int, str],
                  period: float) -> np.ndarray:
-    """A film's page: camera view and plan, BGR, under a bar of words, by where they begin, px."""
+    """A frame: camera view and plan, BGR, below a text bar; `words` by their x, px."""
     height = max(VIEW_PX[1], plan.shape[0]) + BAR_PX
     page = np.full((height + height % 2, VIEW_PX[0] + plan.shape[1], 3), bgr(PAPER), np.uint8)
     for part, left, width in ((view, 0, VIEW_PX[0]), (plan, VIEW_PX[0], plan.shape[1])):
@@ -141,7 +141,7 @@ def side_by_side(view: np.ndarray | None, plan: np.ndarray, words: Mapping[int, 
 
 
 def fit(image: np.ndarray) -> np.ndarray:
-    """The image made to fit into VIEW_PX, in its own proportions."""
+    """The image scaled to fit into VIEW_PX, keeping its aspect ratio."""
     height, width = image.shape[:2]
     scale = min(VIEW_PX[0] / width, VIEW_PX[1] / height)
     size = max(1, round(width * scale)), max(1, round(height * scale))

@@ -1,1 +1,1 @@
-"""Following a red cylinder by sight: its scenes, `make track`, and many seeded trials."""
+"""Following a red cylinder by camera: `make track`, and many seeded trials."""

@@ -1,4 +1,4 @@
-"""How a drive after the cylinder is shown: run.mp4 from above, path.png with the distance too."""
+"""Pictures of a tracking drive: run.mp4 with a top view, path.png also with the distance."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ TARGET_WAY, SHADE, FOLLOWER, WALL = "#823c46", "#24262a", "#78c8f0", "#8c9196"
 MARGIN = 0.15  # m round the walls
 WALLS = HALF_ROOM * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])
 CURVE = 3.0  # inches
-MOST_SHOWN = 1.0  # m beside the wanted distance, at the curve's edges
+MOST_SHOWN = 1.0  # m off the wanted distance, at the plot's edges
 PLAN_PX = 480
 
 
 class TrackFilm(CameraFilm):
-    """Of one drive after the cylinder."""
+    """The video of one tracking drive."""
 
     def __init__(self, path: Path, topic: str, scene: Scene, drive: TrackScorer, period: float):
         super().__init__(path, topic, period)
@@ -53,7 +53,7 @@ class TrackFilm(CameraFilm):
         return side_by_side(view, self._plan(), words, self._period)
 
     def _plan(self) -> np.ndarray:
-        """The drive so far: green where the distance was kept, else orange."""
+        """Top view of the drive so far: green where the distance was kept, else orange."""
         plan, drive = self._floor.copy(), self._drive
         samples, errors = drive.samples[:], drive.errors[:]
         now = samples[-1].time
@@ -70,13 +70,13 @@ class TrackFilm(CameraFilm):
 
 
 def target_way(task: Task, samples: Sequence[Sample]) -> list[np.ndarray]:
-    """Where the cylinder went meanwhile, (x, y) m."""
+    """The cylinder's positions during the samples, each (x, y), m."""
     times = np.arange(samples[0].time, samples[-1].time, 0.2)
     return [task.target(time) for time in times] or [task.target(samples[-1].time)]
 
 
 def write_picture(path: Path, scene: Scene, drive: TrackScorer, lines: Sequence[str]) -> None:
-    """Title and figures are the summary's lines."""
+    """Write path.png; its title and figures are the summary's lines."""
     edge = HALF_ROOM + MARGIN
     figure, axes = map_sheet(lines[0], "   |   ".join(lines[1:3]), (-edge, -edge), (edge, edge),
                              CURVE)
@@ -96,7 +96,7 @@ def write_picture(path: Path, scene: Scene, drive: TrackScorer, lines: Sequence[
 
 
 def _draw_runs(axes: object, x: np.ndarray, y: np.ndarray, drive: TrackScorer) -> None:
-    """Green where the distance was kept, else orange."""
+    """Plot a curve: green where the distance was kept, else orange."""
     near = np.abs(drive.errors) <= BAND
     what = "cylinder" if drive.task.wanted is None else "wanted distance"
     for chosen, colour, text in ((near, GOOD, f"within {BAND:g} m of the {what}"),
@@ -105,7 +105,7 @@ def _draw_runs(axes: object, x: np.ndarray, y: np.ndarray, drive: TrackScorer) -
 
 
 def _draw_curve(axes: object, drive: TrackScorer) -> None:
-    """m beside the wanted distance (or to the cylinder) over s."""
+    """Plot the deviation from the wanted distance (or the distance to the cylinder), m, over s."""
     times = np.array([each.time for each in drive.samples]) - drive.samples[0].time
     wanted = drive.task.wanted is not None
     low, high = (-MOST_SHOWN, MOST_SHOWN) if wanted else (0.0, max(*drive.errors, 0.1))

@@ -1,4 +1,4 @@
-"""The figures of a drive after the cylinder, and the summary at its end."""
+"""The figures of a tracking drive, and its summary."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from evaluation.tracking.score import BAND, SETTLED, TrackScorer
 
 
 def summarize(drive: TrackScorer, start: Start) -> dict:
-    """All figures but those that every car's drive has; m, simulated s."""
+    """The figures that only tracking drives have; m, simulated s."""
     errors, settled = drive.judged_errors(), drive.judged_errors(SETTLED)
     return {
         "outcome": drive.outcome, "good": drive.good,
@@ -33,7 +33,7 @@ def summarize(drive: TrackScorer, start: Start) -> dict:
 
 
 def lines(report: dict) -> list[str]:
-    """The summary for a person."""
+    """The summary for people to read."""
     found = [f"{report['tracker']}, scene {report['scene']}, seed {report['seed']}: "
              f"{report['outcome']}"]
     near = "never" if report["approach_s"] is None else f"after {report['approach_s']:.1f} s"

@@ -1,4 +1,4 @@
-"""`make track`: one drive after the red cylinder, in the world and from the start of its seed."""
+"""`make track`: one drive that follows the red cylinder; world and start depend on the seed."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ COURSE = Course(
     camera="/camera/rgb/image_raw", camera_info="/camera/rgb/camera_info", commands="/cmd_vel",
     odometry="/ground_truth", controllers="/", lockstep=("/cmd_vel",), sensors=(), film_band=0.0)
 ANSWER_LIMIT = 10.0  # s, wall, for the tracker's answer: a busy machine must not change a drive
-LONGEST = 120.0      # s, simulated, to reach a cylinder that stands
+LONGEST = 120.0      # s, simulated, to reach a static cylinder
 
 
 def wanted_distance(tracker: str) -> float | None:
-    """m, as the lesson's parameter file says; None for the tracker that drives up to it."""
+    """m, from the lesson's parameter file; None for the tracker that drives up to the cylinder."""
     if tracker == PAGE:
         return None
     path = find_package(PACKAGE) / "config" / "tracking_params.yaml"
@@ -45,7 +45,7 @@ def wanted_distance(tracker: str) -> float | None:
 
 
 class TrackRun(CarDrive):
-    """One drive and what was seen of it."""
+    """One drive and its score."""
 
     program = "track"
     does = "Follow the red cylinder without a screen, score it, write a report."

@@ -1,10 +1,10 @@
-"""Scores a drive after the cylinder: reached, its distance kept, found again after it was hidden.
+"""Scores a tracking drive: cylinder reached, distance kept, found again after being hidden.
 
-The rules: the car has to come near within APPROACH_TIME, or within the whole drive if it is only to
-get there. From the first moment at which it is within BAND of the wanted distance every sample
-counts: one outside BAND and the distance was not kept. Only the time from the hood's coming down
-until the target has been found again is left out; found again is to be within BAND with the target
-in the picture, and then to stay so for SETTLED.
+The rules: the car has to come near within APPROACH_TIME, or within the whole drive if it only has
+to get there. From the first time at which it is within BAND of the wanted distance every sample
+counts: if one is outside BAND, the distance was not kept. Only the time from when the hood comes
+down until the target is found again is excluded. Found again means: within BAND with the target in
+view, for SETTLED.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from ai_robot_tracking.scenes.world_file import RADIUS
 
 from evaluation.lap import Sample
 
-BAND = 0.3            # m beside the wanted distance
+BAND = 0.3            # m off the wanted distance
 APPROACH_TIME = 20.0  # s
 KEEP_TIME = 60.0      # s that the distance has to be kept
 FIND_TIME = 10.0      # s from the hood's rising
 SETTLED = 3.0         # s
-REACHED_GAP = 0.1     # m between car and cylinder: it is there, and sees nothing else any more
-STANDING_TIME = 5.0   # s that the distance to a standing cylinder has to be kept
-EARLY = "ended early"  # outcome of half a drive
+REACHED_GAP = 0.1     # m between car and cylinder: reached; it fills the camera's view
+STANDING_TIME = 5.0   # s that the distance to a static cylinder has to be kept
+EARLY = "ended early"  # outcome of an interrupted drive
 CAMERA_X, HALF_FOV = 0.12, 0.6981317  # m before the axle, rad
-# Of the car about the middle of its axle, m: half the length, half the width.
+# Rectangles of the car around the middle of its axle, m: half length, half width.
 PARTS = np.array([(0.15, 0.11), (0.06, 0.15)])  # body, both wheels
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is asked of a drive."""
+    """The task of a drive."""
 
-    way: np.ndarray               # (N, 3): s, x, y of the cylinder; one row: it stands
-    hidden: tuple[float, ...]     # s, when the hood is down
+    way: np.ndarray               # (N, 3): s, x, y of the cylinder; one row: it is static
+    hidden: tuple[float, ...]     # s, times at which the hood is down
     wanted: float | None          # m from camera to axis; None: drive up to it
     keep: float = KEEP_TIME       # s
     limit: float = 60.0           # s, of the whole drive
@@ -48,7 +48,7 @@ class Task:
 
 @dataclass
 class Hiding:
-    """One time under the hood."""
+    """One period under the hood."""
 
     begin: float                  # s, simulated
     found_after: float | None = None  # s from the hood's rising until found again
@@ -56,16 +56,16 @@ class Hiding:
 
     @property
     def end(self) -> float:
-        """When the hood has begun to rise, s."""
+        """When the hood begins to rise, s."""
         return self.begin + HIDDEN_TIME
 
     def counts(self, time: float) -> bool:
-        """Whether the target is hidden then, or not found again yet."""
+        """Whether the target is hidden at that time, or not found again yet."""
         over = self.end + self.found_after if self.found_after is not None else math.inf
         return self.begin - FALL_TIME <= time < over
 
     def look(self, time: float, good: bool) -> None:
-        """One more sample; `good`: at its distance, in the picture."""
+        """Take one more sample; `good`: at its distance and in view."""
         if time < self.end or self.found_after is not None:
             return
         self._since = (time if self._since is None else self._since) if good else None
@@ -73,18 +73,18 @@ class Hiding:
             self.found_after = self._since - self.end
 
     def done(self, time: float) -> bool:
-        """Nothing of it is to be waited for any more."""
+        """Whether its result is final."""
         return self.found_after is not None or time > self.end + FIND_TIME + SETTLED
 
 
 class TrackScorer:
-    """Takes samples in the order of time."""
+    """Takes samples in order of time."""
 
     def __init__(self, task: Task):
         self.task = task
         self.samples: list[Sample] = []
-        self.errors: list[float] = []     # m, each sample's distance beside the wanted one
-        self.approach: float | None = None  # s from the beginning until it was near
+        self.errors: list[float] = []     # m, distance minus the wanted one (or the gap, if none)
+        self.approach: float | None = None  # s from the start until it was near
         self.left_at: float | None = None   # s, simulated, when the distance was not kept
         self.hidings = [Hiding(begin) for begin in task.hidden]
         self.least_gap = math.inf         # m between car and cylinder
@@ -117,12 +117,12 @@ class TrackScorer:
 
     @property
     def elapsed(self) -> float:
-        """s, simulated, since the first sample."""
+        """Simulated time since the first sample, s."""
         return self.samples[-1].time - self.samples[0].time if self.samples else 0.0
 
     @property
     def over(self) -> bool:
-        """Nothing more is to be seen."""
+        """Whether the drive can be ended."""
         task = self.task
         if self.approach is None:
             late = task.limit if len(task.way) == 1 or task.wanted is None else APPROACH_TIME
@@ -136,14 +136,14 @@ class TrackScorer:
 
     @property
     def good(self) -> bool:
-        """Whether all that was asked for was seen, of a drive that is over."""
+        """Whether the drive is over and fulfilled its task."""
         found = all(hiding.found_after is not None and hiding.found_after <= FIND_TIME
                     for hiding in self.hidings)
         return self.approach is not None and self.left_at is None and found and self.over
 
     @property
     def outcome(self) -> str:
-        """In words."""
+        """The outcome in words."""
         if not self.over and self.left_at is None:
             return EARLY
         if self.approach is None:
@@ -155,7 +155,7 @@ class TrackScorer:
         return "reached" if self.task.wanted is None else "kept"
 
     def judged_errors(self, after: float = 0.0) -> np.ndarray:
-        """m, of the samples that count and came at least so long (s) after it was near."""
+        """Errors (m) of the samples that count, from `after` s after it was near."""
         if self.approach is None:
             return np.empty(0)
         since = self.samples[0].time + self.approach + after
@@ -164,7 +164,7 @@ class TrackScorer:
         return np.array(self.errors)[chosen]
 
     def _see(self, sample: Sample) -> tuple[float, float, float]:
-        """m from camera to axis, rad of bearing, and m of air between car and cylinder."""
+        """Distance from camera to axis, m; bearing, rad; gap between car and cylinder, m."""
         ahead = np.array([math.cos(sample.yaw), math.sin(sample.yaw)])
         target = self.task.target(sample.time)
         from_camera = target - (sample.x, sample.y) - CAMERA_X * ahead

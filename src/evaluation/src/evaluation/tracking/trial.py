@@ -1,4 +1,4 @@
-"""`make track-trials`: many seeded drives, each as `make track FAST=1`."""
+"""`make track-trials`: many seeded drives, each like `make track FAST=1`."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Set:
     name: str
     scene: str
     tracker: str
-    least_share: float  # of its cases that have to be good; 0: only to be looked at
+    least_share: float  # of its cases that have to be good; 0: for information only
     cases: int = 1      # in each drive
 
 
@@ -63,7 +63,7 @@ class Drive:
 
     @property
     def good(self) -> int:
-        """How many of its cases were good: times hidden, or the drive."""
+        """How many of its cases were good: periods under the hood, or the drive as a whole."""
         if SETS[self.set].scene != OCCLUSION:
             return int(self.report["good"])
         return sum(each["found_after_s"] is not None and each["found_after_s"] <= FIND_TIME
@@ -83,7 +83,7 @@ COLUMNS = {
 
 
 class TrackTrial(Trial):
-    """Drives of several sets; each drive's own folder holds its report."""
+    """Drives of several sets; each drive's report is in its own folder."""
 
     program = "track_trials"
     does = "Follow the red cylinder in many seeded drives, and count."
@@ -108,7 +108,7 @@ class TrackTrial(Trial):
                 for seed in range(first, first + math.ceil(options.seeds / kind.cases))]
 
     def earlier(self, options: argparse.Namespace) -> list[Drive]:
-        """The whole drives whose reports there are; none is no mistake."""
+        """The complete drives that have reports; it is no error if there are none."""
         found = [(case, _read(path)) for case in self.cases(options)
                  if (path := options.out / case.name / REPORT).exists()]
         return [Drive(case.name, case.set, report) for case, report in found
@@ -123,7 +123,7 @@ class TrackTrial(Trial):
             "--no-video", "--out", str(folder)], folder)
 
     def run(self) -> dict:
-        """The drive's report."""
+        """Returns the drive's report."""
         return self._drive.report(LIMIT, f"{self._case.set}, seed {self._case.seed}")
 
     def score(self, record: dict) -> Drive:
@@ -148,7 +148,7 @@ class TrackTrial(Trial):
 
 
 def summarize(drives: Sequence[Drive]) -> list[dict]:
-    """One for each set there is, in the sets' order; m, s, None where there is no figure."""
+    """A summary for each set that was driven, in order; m, s, None if there is no figure."""
     groups = {name: [drive for drive in drives if drive.set == name] for name in SETS}
     return [_summary(SETS[name], group) for name, group in groups.items() if group]
 

@@ -1,4 +1,4 @@
-"""A car's drive, watched by its true poses from the first one until nothing more is to be seen."""
+"""A car's drive, followed by its true poses from the first one until the drive is over."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from run_session.frames import frame_figures
 from run_session.launch import Launched
 from run_session.observer import Observer
 
-LOOK_PERIOD = 0.05  # s, wall, between two looks at processes and samples
+LOOK_PERIOD = 0.05  # s, wall, between two checks of processes and samples
 
 
 class CarDrive(LiveDrive):
@@ -26,25 +26,25 @@ class CarDrive(LiveDrive):
         super().__init__(options)
         self.course, self.drive = course, drive
         self.fingerprints: Fingerprints | None = None
-        self._first_at = self._last_at = time.monotonic()  # s, wall: when these samples came
+        self._first_at = self._last_at = time.monotonic()  # s, wall: arrival of these samples
         self._observer: Observer | None = None
         self._frames = 0, 0  # images and commands
         self.sensor_sums: dict[str, str | None] = {}
 
     @abstractmethod
     def launch_words(self) -> Sequence[str]:
-        """Package, launch file, its arguments."""
+        """Arguments of roslaunch: package, launch file, its arguments."""
 
     @abstractmethod
     def outcome(self) -> Outcome:
-        """Of a drive that is over."""
+        """The outcome of a drive that is over."""
 
     @abstractmethod
     def line(self) -> str:
-        """How the drive stands."""
+        """The progress line."""
 
     def bring_up(self, launched: Launched) -> None:
-        """Start everything and wait until the car stands there."""
+        """Start everything and wait until the car is there."""
         words = self.launch_words()
         listened = self.course.sensors if self.fingerprints else ()
         self._observer = Observer(launched.master_uri, self.course.robot_name(words[2:]),
@@ -68,7 +68,7 @@ class CarDrive(LiveDrive):
         return self.outcome()
 
     def _take_samples(self) -> int:
-        """Score what came in the last LOOK_PERIOD; what came after the end does not count."""
+        """Score the samples of the last LOOK_PERIOD; those after the end do not count."""
         arrivals = self._observer.samples(LOOK_PERIOD)
         samples: list[Sample] = self.drive.samples
         for arrived, seen in arrivals:
@@ -83,7 +83,7 @@ class CarDrive(LiveDrive):
         return len(arrivals)
 
     def end(self) -> None:
-        """Count the images up to the last sample, and ask no more."""
+        """Count the images up to the last sample, and stop observing."""
         if self._observer is None:
             return
         if self.was_seen:
@@ -98,12 +98,12 @@ class CarDrive(LiveDrive):
 
     @property
     def simulated(self) -> float:
-        """s, from the first sample to the last."""
+        """Simulated time from the first sample to the last, s."""
         samples = self.drive.samples
         return samples[-1].time - samples[0].time if samples else 0.0
 
     def counted(self, log: list[str], digits: int) -> dict:
-        """Frames, times and the sum over the drive, for the report."""
+        """Frames, times and the drive's checksum, for the report."""
         simulated, wall = self.simulated, self._last_at - self._first_at
         return {**frame_figures(*self._frames, log if self.options.fast else None),
                 "drive_sha256": fingerprint(self.drive),
@@ -111,7 +111,7 @@ class CarDrive(LiveDrive):
                 "real_time_factor": round(simulated / wall, digits) if wall > 0 else None}
 
     def fast_arguments(self) -> list[str]:
-        """For the launch file: as fast as it goes, in lockstep."""
+        """Launch arguments to run as fast as possible, in lockstep."""
         if not self.options.fast:
             return []
         # At five times real time the usual 100 Hz would wake every node 500 times a second.

@@ -1,7 +1,7 @@
 """A case in a process of its own: `python3 -m evaluation.trial.case_process FOLDER`.
 
-FOLDER/case is a pickled Order; the process leaves FOLDER/result, pickled, and FOLDER/out. What it
-says, its last line the reason where there is no result, goes to its standard output.
+FOLDER/case is a pickled Order; the process leaves FOLDER/result, pickled, and FOLDER/out. It
+writes to standard output; if there is no result, its last line gives the reason.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ ORDER, RESULT, OUT = "case", "result", "out"
 
 @dataclass(frozen=True)
 class Order:
-    """All that another machine has to know of a case; its evaluation package knows the rest."""
+    """All that another machine needs of a case besides its own evaluation package."""
 
     trial: type[Trial]
     arguments: Sequence[str]
     case: Case
-    start: str  # the folder in which relative paths among the arguments begin
+    start: str  # the folder to which paths among the arguments are relative
 
 
 def _run(order: Order, folder: Path) -> int:
-    with contextlib.suppress(OSError):  # another machine may not have it
+    with contextlib.suppress(OSError):  # another machine may lack this folder
         os.chdir(order.start)
     trial = order.trial()
     options = trial.parse([*order.arguments, "--out", str(folder / OUT)])

@@ -1,4 +1,4 @@
-"""What a Dask worker does with a case: a process of its own, in a folder that is made for it."""
+"""Runs a case on a Dask worker: as a process of its own, in a temporary folder."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ from run_session.failure import RunError
 from run_session.launch import describe_exit
 from run_session.processes import end_with_parent, read_log
 
-LOOK_PERIOD = 0.5  # s, wall, between two looks at whether the case is still wanted
-END_TIME = 10.0  # s, wall, for a case that is not; its session takes 3 s at most
+LOOK_PERIOD = 0.5  # s, wall, between two checks whether the case is still wanted
+END_TIME = 10.0  # s, wall, for an unwanted case to end; its session takes 3 s at most
 DETAILS = 12  # lines
 GONE = (Status.closing, Status.closed, Status.failed)
 
 
 class CaseError(RunError):
-    """The case could not be run; what it left comes along, packed."""
+    """The case could not be run; `files` holds the files that it left, packed."""
 
     files: bytes = b""
 
 
 def run_case(order: bytes, out: str) -> tuple[bytes, bytes]:
-    """The result, pickled, and the files, packed; `out` is what messages call the case's folder.
+    """Returns the pickled result and the packed files; `out` is the folder's name in messages.
 
-    CaseError if the case could not be run. A case that nobody waits for any more is ended: then,
+    CaseError if the case could not be run. A case whose result is no longer wanted is ended; then,
     and when the worker dies, all of its processes end with it.
     """
     worker = get_worker()
@@ -55,7 +55,7 @@ def run_case(order: bytes, out: str) -> tuple[bytes, bytes]:
 
 
 def _run_process(folder: str, log: Path, wanted: Callable[[], bool]) -> int:
-    """The process's exit code."""
+    """Run the case's process; returns its exit code."""
     with log.open("wb") as output:
         process = subprocess.Popen(
             [sys.executable, "-P", "-m", "evaluation.trial.case_process", folder],
@@ -76,7 +76,7 @@ def _run_process(folder: str, log: Path, wanted: Callable[[], bool]) -> int:
 
 
 def _wanted_from(worker: Worker) -> Callable[[], bool]:
-    """Whether a client still waits for this thread's task, as the worker knows it."""
+    """A function that tells, by the worker, whether a client still waits for this thread's task."""
     key = worker.get_current_task()
 
     def wanted() -> bool:
@@ -87,7 +87,7 @@ def _wanted_from(worker: Worker) -> Callable[[], bool]:
 
 
 def pack(folder: Path) -> bytes:
-    """All files below a folder, which need not be there; no links."""
+    """A zip archive of all files below a folder, which may be missing; without links."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED, compresslevel=1,
                          strict_timestamps=False) as archive:

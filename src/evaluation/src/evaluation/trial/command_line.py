@@ -1,4 +1,4 @@
-"""The command lines of the programs: a mistake is one line that says what to type instead."""
+"""The programs' command lines: an error is one line that says what to type instead."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from pathlib import Path
 
 from run_session.failure import RunError
 
-MOST = 999_999          # of what is counted or seeds something
+MOST = 999_999          # largest count or seed
 LARGEST_SEED = 999_999_999
-LEAST_PACE, MOST_PACE = 0.01, 20.0  # no machine keeps up with more
+LEAST_PACE, MOST_PACE = 0.01, 20.0  # no machine can keep up with more
 
 
 class Parser(argparse.ArgumentParser):
-    """Knows options by their whole names; its errors are RunErrors."""
+    """Accepts no abbreviated options; its errors are RunErrors."""
 
     def __init__(self, package: str = "evaluation", **settings: object) -> None:
         super().__init__(**{"allow_abbrev": False, **settings})
-        self._package = package  # that the program belongs to; none: it is a script in scripts/
+        self._package = package  # to which the program belongs; empty: it is a script in scripts/
 
     def error(self, message: str) -> None:
-        """RunError that says where the options are listed."""
+        """Raise a RunError that says where the options are listed."""
         start = f"rosrun {self._package} " if self._package else "scripts/"
-        raise RunError(f"{message} (see: {start}{self.prog.split()[0]} --help)")  # before a verb
+        raise RunError(f"{message} (see: {start}{self.prog.split()[0]} --help)")  # without a verb
 
     def add_whole(self, flag: str, default: int | None, text: str, *, variable: str | None = None,
                   least: int = 0, most: int = MOST) -> None:
-        """A whole number; `variable`: what the Makefile calls it, if not as a one-word option."""
+        """Add an integer option; `variable`: its name in the Makefile, if not the option's word."""
         variable = flag[2:].upper() if variable is None else variable
         name = flag if "-" in variable or not variable else f"{flag} ({variable}=)"
         self.add_argument(
@@ -37,13 +37,13 @@ class Parser(argparse.ArgumentParser):
             help=f"{text} ({default or 0})")
 
     def add_pace(self, text: str) -> None:
-        """--real-time-factor, simulated seconds a second."""
+        """Add --real-time-factor, simulated seconds per second."""
         self.add_argument(
             "--real-time-factor", metavar="X", default=1.0, help=text, type=partial(
                 number, "--real-time-factor (PACE=)", least=LEAST_PACE, most=MOST_PACE))
 
     def add_out(self, default: str, text: str) -> None:
-        """--out, a folder."""
+        """Add --out, a folder."""
         self.add_argument("--out", type=Path, default=Path(default), metavar="DIR",
                           help=f"where {text} go ({default})")
 
@@ -63,7 +63,7 @@ def number(name: str, text: str, least: float, most: float, what: str = "a numbe
 
 
 def one_of(kind: str, variable: str, names: Iterable[str], name: str) -> str:
-    """The name, or RunError that says which there are; `variable` is what the Makefile calls it."""
+    """The name, or RunError that lists the known ones; `variable` is its name in the Makefile."""
     known = tuple(names)
     if name not in known:
         raise RunError(f"no {kind} {name!r} ({variable}=); there are: {', '.join(known) or 'none'}")

@@ -1,4 +1,4 @@
-"""A single drive that is watched and filmed: brought up, watched, ended and reported."""
+"""A single drive with supervision and video: started, observed, ended and reported."""
 
 from __future__ import annotations
 
@@ -21,42 +21,42 @@ from run_session.session import Session
 from run_session.status_line import StatusLine
 from run_session.versions import versions
 
-Outcome = tuple[str, str]  # a word, and why
-# s, wall; an emulated ARM processor takes minutes to start, and seconds for its first picture
+Outcome = tuple[str, str]  # a word, and the reason
+# s, wall; an emulated ARM processor takes minutes to start, and seconds for its first image
 STARTUP_TIMEOUT, STUCK_TIMEOUT = 300.0, 60.0
 EARLIER = "earlier"  # a folder in `out`
 
 
 class LiveDrive(ABC):
-    """One drive; its report is also written of a drive that ended early."""
+    """One drive; a report is written even if it ended early."""
 
     program: ClassVar[str]
     does: ClassVar[str]  # for --help
     ends: ClassVar[str]  # what the exit codes mean
     usual_out: ClassVar[str]  # where results go, for --help
     writes: ClassVar[Sequence[str]]  # files in `out`
-    stay: ClassVar[Sequence[str]] = ()  # those of a run before stay until the next are whole
+    stay: ClassVar[Sequence[str]] = ()  # those of the last run that stay until new ones are whole
     vehicle: ClassVar[str] = "car"
-    logs: ClassVar[str] = "roslaunch.log"  # files in which the simulator says what it draws with
+    logs: ClassVar[str] = "roslaunch.log"  # files in which the simulator names its renderer
     driver = ""  # the script that drives, for messages
 
     def __init__(self, options: argparse.Namespace):
         self.options, self.out = options, options.out
         self.progress = StatusLine()
         self.film: FilmFile | None = None
-        self._time: float | None = None  # s, simulated, when it was last checked
-        self._since = 0.0  # s, wall: it has been so late since then
+        self._time: float | None = None  # s, simulated, at the last check
+        self._since = 0.0  # s, wall, since when simulated time has had this value
 
-    # --- what is asked for
+    # --- options
 
     @classmethod
     @abstractmethod
     def add_options(cls, parser: Parser) -> None:
-        """The options beside those that every drive has."""
+        """Add the options besides those that every drive has."""
 
     @classmethod
     def check(cls, options: argparse.Namespace) -> argparse.Namespace:
-        """Completed; RunError for options that do not fit together."""
+        """The completed options; RunError if they contradict one another."""
         return options
 
     @classmethod
@@ -81,15 +81,15 @@ class LiveDrive(ABC):
 
     @abstractmethod
     def bring_up(self, launched: Launched) -> None:
-        """Start everything and wait until it is there."""
+        """Start everything and wait until it is up."""
 
     @abstractmethod
     def watch(self, launched: Launched) -> Outcome:
-        """Returns when nothing more is to be seen."""
+        """Observe the drive; returns its outcome when it is over."""
 
     @abstractmethod
     def end(self) -> None:
-        """Count what is still to be counted, while all still runs; then look no more."""
+        """Do the final counts while everything still runs; then stop observing."""
 
     def check_time(self, launched: Launched, now: float) -> None:
         """RunError if a program died, or if simulated time, s, has stood still for too long."""
@@ -101,33 +101,33 @@ class LiveDrive(ABC):
             raise RunError(f"simulated time has stood still at {now:.1f} s for {still:.0f} s:"
                            " the simulator is paused or hangs")
 
-    # --- what was found
+    # --- results
 
     @property
     @abstractmethod
     def was_seen(self) -> bool:
-        """Whether there is something to report."""
+        """Whether there is anything to report."""
 
     @abstractmethod
     def figures(self, outcome: Outcome, log: list[str]) -> dict:
-        """For report.json; `log` is what the simulator said."""
+        """The figures for report.json; `log` has the simulator's output lines."""
 
     @abstractmethod
     def write(self, report: dict) -> list[str]:
-        """Write pictures and report.json; returns the summary for a person."""
+        """Write pictures and report.json; returns the summary lines."""
 
     @abstractmethod
     def faults(self, outcome: Outcome) -> list[str]:
-        """What was not good, one line each; "" is one that the report says already."""
+        """Faults, one line each; "" for one that the report already names."""
 
 
 def run_program_of(kind: type[LiveDrive], arguments: Sequence[str]) -> int:
-    """Run the command line of such a drive; returns the exit code."""
+    """Run a drive with this command line; returns the exit code."""
     return run_program(kind.program, lambda: run_live(kind(kind.parse(arguments))))
 
 
 def run_live(drive: LiveDrive) -> int:
-    """From beginning to end; returns the exit code, or raises what ended it early."""
+    """Run from start to end; returns the exit code, or raises the exception that ended it early."""
     _make_room(drive)
     early, outcome = None, ("ended early", "interrupted")
     try:
@@ -145,7 +145,7 @@ def run_live(drive: LiveDrive) -> int:
                 drive.film.stop()
             session.family.spared = drive.film.process_id if drive.film else None
             drive.end()
-    except KeyboardInterrupt as ended:  # while all ended: what was seen is reported
+    except KeyboardInterrupt as ended:  # during the shutdown: results are still reported
         early = ended
     found = None
     try:
@@ -163,7 +163,7 @@ def run_live(drive: LiveDrive) -> int:
 
 
 def _report(drive: LiveDrive, outcome: Outcome, log_folder: Path) -> dict:
-    """Write and show the report, as if there were no film: it may not come to its end."""
+    """Write and show the report, still without the video, which may fail to finish."""
     log = [line for path in sorted(log_folder.glob(drive.logs)) for line in read_log(path)]
     found = drive.figures(outcome, log)
     found |= {"film": None, "versions": versions(Path(__file__).parent, log)}
@@ -172,7 +172,7 @@ def _report(drive: LiveDrive, outcome: Outcome, log_folder: Path) -> dict:
 
 
 def _finish_film(drive: LiveDrive, found: dict | None) -> None:
-    """Have it whole, and in the report, or say why there is none; then name all files."""
+    """Finish the video and add it to the report, or say why there is none; then list all files."""
     fault = drive.film.close() if drive.film else ""
     if fault:
         print(f"{drive.program}: no film: {fault}", file=sys.stderr)
@@ -187,7 +187,7 @@ def _finish_film(drive: LiveDrive, found: dict | None) -> None:
 
 
 def _make_room(drive: LiveDrive) -> None:
-    """What is in the folder afterwards is of this run; results of the last one go to EARLIER."""
+    """Move the previous run's results to EARLIER, so that the folder holds only this run's."""
     earlier = drive.out / EARLIER
     try:
         drive.out.mkdir(parents=True, exist_ok=True)
@@ -195,7 +195,7 @@ def _make_room(drive: LiveDrive) -> None:
         for path in filter(Path.exists, owned):
             earlier.mkdir(exist_ok=True)
             path.replace(earlier / path.name)
-        for half in drive.out.glob("*.part.*"):  # of a film whose run was killed
+        for half in drive.out.glob("*.part.*"):  # from a video whose run was killed
             half.unlink()
     except PermissionError:
         raise

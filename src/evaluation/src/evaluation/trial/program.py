@@ -1,4 +1,4 @@
-"""What the programs share: exit codes, and one line for each thing that goes wrong."""
+"""Shared by the programs: exit codes, and errors printed as one line."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 
 
 def run_program(name: str, work: Callable[[], int]) -> int:
-    """Do the work; returns its exit code, or says what went wrong and returns another."""
+    """Do the work; returns its exit code, or prints the error and returns another."""
     try:
         with interruptible():
             return work()
@@ -35,7 +35,7 @@ def run_program(name: str, work: Callable[[], int]) -> int:
 
 
 def complain(name: str, failure: Exception) -> None:
-    """The failure's details, if it has any, then its one line."""
+    """Print the failure's details, if any, then its one line."""
     if details := getattr(failure, "details", ""):
         print(details, file=sys.stderr)
     print(f"{name}: {failure}", file=sys.stderr)

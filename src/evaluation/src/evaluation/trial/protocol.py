@@ -1,4 +1,4 @@
-"""What a trial says: which cases there are, how one is set up and run, and how it is scored."""
+"""The interface of a trial: its cases, how one is set up and run, and how it is scored."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MOST_WORKERS = 1000
 
 @dataclass(frozen=True)
 class Case:
-    """One thing to try: picklable, and tried twice it gives the same files and the same result."""
+    """One case: picklable; run twice, it gives the same files and the same result."""
 
     name: str  # unique among the cases; also that of its result
 
@@ -29,72 +29,72 @@ class Case:
 class Trial(ABC):
     """Cases that are set up, run and scored one by one; the runner does everything else.
 
-    A result is an object with the `name` of its case. `setup`, `run` and `score` follow one
-    another in one process. Another process may do another case: it makes a trial of its own from
-    the same arguments (`parse`) and is handed the case.
+    A result is an object with the `name` of its case. `setup`, `run` and `score` of a case run
+    after one another in one process. Another process may run another case: it makes a trial of its
+    own from the same arguments (`parse`) and is given the case.
     """
 
-    package: ClassVar[str] = "evaluation"  # that has the program
+    package: ClassVar[str] = "evaluation"  # which contains the program
     program: ClassVar[str]
     does: ClassVar[str]  # for --help
     good: ClassVar[str]  # what exit code 0 means
-    writes: ClassVar[str]  # what is in the folder for results
-    open_ended: ClassVar[bool] = False  # how many of the cases are needed depends on the results
-    shared: ClassVar[Sequence[str]] = ()  # options that are the same for all results of a report
+    writes: ClassVar[str]  # the contents of the folder for results
+    open_ended: ClassVar[bool] = False  # whether the results decide how many cases are needed
+    shared: ClassVar[Sequence[str]] = ()  # options that are the same for all results in a report
 
-    # --- what there is to do
+    # --- options and cases
 
     @abstractmethod
     def add_options(self, parser: Parser) -> None:
-        """The options beside --out, --resume, --workers and --scheduler."""
+        """Add the options besides --out, --resume, --workers and --scheduler."""
 
     @abstractmethod
     def check(self, options: argparse.Namespace) -> None:
-        """RunError for options that do not fit together; also the place to complete them."""
+        """RunError for contradictory options; also the place to complete them."""
 
     @abstractmethod
     def cases(self, options: argparse.Namespace) -> Sequence[Case]:
-        """All cases, in the order in which they are tried."""
+        """All cases, in the order in which they are run."""
 
     def is_needed(self, case: Case, results: Sequence[Any]) -> bool:
-        """Whether a case that was not tried yet has to be, after these results."""
+        """Whether a case that was not run yet is still needed, after these results."""
         return True
 
     # --- one case
 
     @abstractmethod
     def setup(self, session: Session, case: Case) -> None:
-        """Bring up what the case needs; what is started through the session ends with it."""
+        """Start what the case needs; processes started through the session end with it."""
 
     @abstractmethod
     def run(self) -> Any:
-        """Let it happen; returns the record of what was seen. RunError if it could not be run."""
+        """Run the case; returns the record of what happened. RunError if it could not be run."""
 
     def score(self, record: Any) -> Any:
-        """The result of a record: itself if it was judged on the way."""
+        """The result of a record: the record itself if it was judged during the run."""
         return record
 
-    # --- all of them
+    # --- all results
 
     def passed(self, results: Sequence[Any]) -> bool:
-        """Whether the results are good: exit code 0, else 1."""
+        """Whether the trial passed: exit code 0, else 1."""
         return all(each.passed for each in results)
 
     def line(self, result: Any) -> str:
-        """One result on one line."""
+        """A one-line summary of a result."""
         return result.line
 
     @abstractmethod
     def table(self, results: Sequence[Any]) -> str:
-        """All results together, for the terminal."""
+        """The table of all results, for the terminal."""
 
     @abstractmethod
     def values(self, results: Sequence[Any]) -> dict:
-        """What report.json holds."""
+        """The content of report.json."""
 
     @abstractmethod
     def earlier(self, options: argparse.Namespace) -> list[Any]:
-        """The results to go on with; RunError if there are none and there should be."""
+        """The results to resume from; RunError if there are none but should be."""
 
     def pictures(self, results: Sequence[Any], out: Path) -> list[str]:
         """Draw pictures of the results; returns their names."""
@@ -123,24 +123,24 @@ class Trial(ABC):
 
 
 class ReportedTrial(Trial):
-    """A trial whose report.json holds all of its results: --resume reads them there."""
+    """A trial whose report.json holds all of its results, from which --resume reads them."""
 
     result: ClassVar[type]  # a dataclass
     listed: ClassVar[str] = "drives"  # the results' key in report.json
-    derived: ClassVar[Sequence[str]] = ()  # properties that stand there beside the fields
+    derived: ClassVar[Sequence[str]] = ()  # properties written there besides the fields
 
     def values(self, results: Sequence[Any]) -> dict:
-        """What report.json holds."""
+        """The content of report.json."""
         return {self.listed: [
             {**asdict(each), **{name: getattr(each, name) for name in self.derived}}
             for each in results]}
 
     def from_values(self, values: dict) -> list[Any]:
-        """The results of a report.json, as `values` wrote them; KeyError, TypeError, ValueError."""
+        """The results from what `values` wrote; KeyError, TypeError, ValueError if malformed."""
         return [from_json(self.result, each) for each in values[self.listed]]
 
     def earlier(self, options: argparse.Namespace) -> list[Any]:
-        """The results to go on with; RunError if there are none, or of other shared options."""
+        """The results to resume from; RunError if there are none, or shared options differ."""
         path = options.out / REPORT
         try:
             values = json.loads(path.read_text(encoding="utf-8"))
@@ -162,7 +162,7 @@ def try_case(trial: Trial, session: Session, case: Case) -> Any:
 
 
 def from_json(kind: Any, value: Any) -> Any:
-    """One of `kind` from what asdict and JSON made of it; KeyError: no such field, TypeError."""
+    """An instance of `kind` from its asdict as JSON; KeyError or TypeError if fields do not fit."""
     if is_dataclass(kind):
         kinds = get_type_hints(kind)
         return kind(**{each.name: from_json(kinds[each.name], value[each.name])

@@ -1,4 +1,4 @@
-"""report.json, report.html with table, pictures and a line for each result; tables themselves."""
+"""Writes report.json, and report.html (table, pictures, a line for each result); makes tables."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PAGE = "report.html"
 
 
 def write_json(values: dict, path: Path) -> None:
-    """OSError names the file; the one of before is then still whole."""
+    """Write values as JSON; on OSError, which names the file, the previous file stays intact."""
     write_whole(path, (json.dumps(values, indent=1) + "\n").encode())
 
 
@@ -33,7 +33,7 @@ def write_page(out: Path, title: str, table: str, lines: Sequence[str],
 
 
 def table(rows: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> str:
-    """Columns under each other: those with a number in `left` to the left, the others right."""
+    """An aligned text table; columns whose index is in `left` are left-aligned, others right."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return "\n".join("  ".join(
         cell.ljust(width) if column in left else cell.rjust(width)
@@ -43,13 +43,13 @@ def table(rows: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> str:
 
 def table_of(columns: Mapping[str, Callable[[Any], str]], found: Iterable[Any],
              left: Collection[int] = (0,)) -> str:
-    """A row for each thing that was found; `columns` has headings and what makes the cells."""
+    """A table with a row for each item; `columns`: headings and the functions that make cells."""
     return table([list(columns), *([make(each) for make in columns.values()] for each in found)],
                  left)
 
 
 def grouped(found: Iterable[Any], key: Callable[[Any], Any]) -> dict[Any, list[Any]]:
-    """By key, in the order in which keys first appear."""
+    """Items by key, in the order in which keys first appear."""
     groups: dict[Any, list[Any]] = {}
     for each in found:
         groups.setdefault(key(each), []).append(each)
@@ -57,10 +57,10 @@ def grouped(found: Iterable[Any], key: Callable[[Any], Any]) -> dict[Any, list[A
 
 
 def cell(value: float | None, factor: float = 1, digits: int = 1) -> str:
-    """A figure times `factor`, with so many decimals; a dash where there is none."""
+    """A figure times `factor`, with this many decimals; a dash for None."""
     return "-" if value is None else f"{value * factor:.{digits}f}"
 
 
 def mean(values: Sequence[float]) -> float | None:
-    """None of nothing."""
+    """The mean; None of an empty sequence."""
     return statistics.fmean(values) if values else None

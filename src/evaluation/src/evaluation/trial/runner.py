@@ -1,4 +1,4 @@
-"""Tries case by case: resumes, prints, writes report.json and report.html, gives the exit code."""
+"""Runs case by case: resumes, prints, writes report.json and report.html, returns the exit code."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _run(trial: Trial, options: argparse.Namespace, arguments: Sequence[str]) ->
         else:
             _try_here(tally, trial, options.out)
     finally:
-        if tally.results:  # what was tried is kept, however it ended
+        if tally.results:  # finished cases are kept, however the run ended
             _show(trial, tally, options.out)
     if tally.failures:
         raise RunError(f"{len(tally.failures)} of {len(tally.cases)} cases could not be run; "
@@ -43,7 +43,7 @@ def _run(trial: Trial, options: argparse.Namespace, arguments: Sequence[str]) ->
 
 
 class Tally:
-    """What has become of the cases; results are in the cases' order, those of others first."""
+    """The results so far, in the order of the cases; those of no current case come first."""
 
     def __init__(self, trial: Trial, options: argparse.Namespace):
         self._trial, self._options = trial, options
@@ -53,13 +53,13 @@ class Tally:
         self._place = {case.name: number for number, case in enumerate(self.cases)}
 
     def is_needed(self, case: Case) -> bool:
-        """Whether a case has still to be tried, after the results of those before it."""
+        """Whether a case still has to be run, given the results of those before it."""
         there = {result.name for result in self.results}
         before = [each for each in self.results if self._number(each) < self._place[case.name]]
         return case.name not in there and self._trial.is_needed(case, before)
 
     def take(self, result: Any, say: Callable[[str], None]) -> None:
-        """One more result; the report has it."""
+        """Add a result, print its line and write the report."""
         self.results.append(result)
         self.results.sort(key=self._number)
         count = sum(self._number(each) >= 0 for each in self.results)
@@ -68,12 +68,12 @@ class Tally:
         self.write()
 
     def write(self) -> None:
-        """The report so far, with what --resume has to be given again."""
+        """Write the report so far, with the options that --resume requires to be the same."""
         write_json({**self._trial.values(self.results), "options": self._options.shared},
                    self._options.out / REPORT)
 
     def drop_unneeded(self) -> None:
-        """What one case after the other would not have tried is not counted."""
+        """Drop results of cases that a sequential run would not have run."""
         kept = [each for each in self.results if self._number(each) < 0]
         for each in self.results[len(kept):]:
             if self._trial.is_needed(self.cases[self._number(each)], kept):

@@ -1,4 +1,4 @@
-"""Hands cases to the workers of a Dask cluster. Whose turn it is, and another try, are Dask's."""
+"""Runs cases on the workers of a Dask cluster; Dask does the scheduling and retries."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from evaluation.trial.case_task import CaseError, run_case
 from evaluation.trial.protocol import Case, Trial
 from run_session.failure import RunError
 
-RETRIES = 1  # of a case that could not be run; workers that die with it are counted by Dask
+RETRIES = 1  # of a case that could not be run; Dask counts worker deaths separately
 CONNECT_TIME = 10.0  # s, wall
 ADDRESS = re.compile(r"\w+://[^\s/]+:\d+")
 
@@ -35,12 +35,12 @@ ADDRESS = re.compile(r"\w+://[^\s/]+:\d+")
 def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namespace,
                    arguments: Sequence[str], is_needed: Callable[[Case], bool],
                    say: Callable[[str], None]) -> Iterator[tuple[Case, Any]]:
-    """Cases and their results, as they come; a CaseError instead of one that could not be had.
+    """Yields cases with their results, as they finish; a CaseError for one that could not be run.
 
-    A case's files are in `options.out` when its result comes. Ending the generator ends what runs.
+    A case's files are in `options.out` when its result comes. Closing the generator ends all cases.
     """
-    dask.config.set({"distributed.worker.profile.enabled": False})  # it costs processor time
-    for name in ("distributed", "distributed.client"):  # failures are the runner's to tell
+    dask.config.set({"distributed.worker.profile.enabled": False})  # it costs CPU time
+    for name in ("distributed", "distributed.client"):  # the runner reports failures
         logging.getLogger(name).setLevel(logging.CRITICAL)
     with _connected(options) as client:
         if not client.scheduler_info()["workers"]:
@@ -49,7 +49,7 @@ def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namesp
         def ask(asked: Sequence[Case]) -> dict[Future, Case]:
             orders = [pickle.dumps(Order(type(trial), arguments, case, os.getcwd()))
                       for case in asked]
-            group = f"{trial.program}-{uuid4()}"  # a key each, so that no other run's is taken
+            group = f"{trial.program}-{uuid4()}"  # unique, to get no other run's results
             futures = client.map(
                 run_case, orders, out=str(options.out), retries=RETRIES,
                 key=[(group, case.name) for case in asked])
@@ -63,7 +63,7 @@ def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namesp
                 continue
             try:
                 outcome = _outcome(future, options.out)
-            except CancelledError:  # the connection broke: Dask has made it anew, or gives up
+            except CancelledError:  # the connection broke: Dask has reconnected, or gives up
                 waiting |= (again := ask([case]))
                 finished.update(again)
                 continue
@@ -76,7 +76,7 @@ def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namesp
 
 @contextlib.contextmanager
 def _connected(options: argparse.Namespace) -> Iterator[Client]:
-    """A client of the scheduler that was named, else of threads of this process."""
+    """A client of the given scheduler, else of a cluster of threads in this process."""
     with contextlib.ExitStack() as opened:
         cluster = options.scheduler or opened.enter_context(LocalCluster(
             n_workers=1, threads_per_worker=options.workers, processes=False,
@@ -95,26 +95,26 @@ def _client_of(cluster: str | LocalCluster) -> Client:
     try:
         client.__init__(cluster, timeout=CONNECT_TIME, set_as_default=False)
     except (OSError, RuntimeError, TypeError, ValueError) as error:
-        client.status = "closed"  # half a client would try for 20 s to close, and end badly
+        client.status = "closed"  # a half-initialised client would try to close for 20 s, and fail
         raise RunError(f"no Dask scheduler at {cluster} (SCHEDULER=): {error}") from None
     return client
 
 
 def _outcome(future: Future, out: Path) -> Any:
-    """The result, or the CaseError; the files are unpacked."""
+    """Unpack the files; returns the result, or the CaseError."""
     error = future.exception()
     if error is None:
         result, files = future.result()
         unpack(files, out)
         return pickle.loads(result)
-    if not isinstance(error, CaseError):  # its workers died, or know nothing of this workspace
+    if not isinstance(error, CaseError):  # its workers died, or lack this workspace
         return CaseError(f"{type(error).__name__}: {' '.join(str(error).split())}")
     unpack(error.files, out)
     return error
 
 
 def unpack(files: bytes, out: Path) -> None:
-    """Put packed files below a folder; each of them appears whole."""
+    """Unpack files below a folder; each one appears atomically."""
     with tempfile.TemporaryDirectory(dir=out, prefix=".case-") as folder:
         with zipfile.ZipFile(BytesIO(files)) as archive:
             archive.extractall(folder)

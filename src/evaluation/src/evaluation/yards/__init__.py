@@ -1,1 +1,1 @@
-"""move_base in narrow worlds that it does not know, and with a person in its way."""
+"""move_base without a map in narrow worlds, and with a person in its way."""

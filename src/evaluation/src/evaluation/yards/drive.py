@@ -24,7 +24,7 @@ from trial_worlds.yard import draw_yard
 LOOK_PERIOD = 0.05  # s, wall
 SILENCE = 30.0      # s, wall
 LIMIT = 100.0       # s, simulated, as in the benchmark
-NEAR = 0.2          # m from a goal that is called reached, by the simulator's own pose
+NEAR = 0.2          # m from a goal that is reported reached, by the simulator's own pose
 ORIGIN = (0.0, 0.0, 0.0)
 
 
@@ -39,20 +39,20 @@ class YardCase(Case):
 
 @dataclass(frozen=True)
 class Task:
-    """What is to be driven; m, rad."""
+    """The task of a drive; m, rad."""
 
     case: YardCase
-    models: dict[str, tuple[str, Place]]  # SDF and place, by name
+    models: dict[str, tuple[str, Place]]  # SDF and pose, by name
     start: Place
     goal: Place
-    shortest: float  # the way's length
+    shortest: float  # length of the shortest path
     cylinders: np.ndarray  # (N, 2), centres
     drawn: dict
     walk: Crossing | None = None
 
 
 def task_of(case: YardCase) -> Task:
-    """Through a yard, or through a room that a person walks across."""
+    """The task: through a yard, or through a room that a person walks across."""
     if case.set == outcomes.YARDS:
         yard = draw_yard(case.seed)
         drawn = {"fill": yard.fill, "smoothing": yard.smoothing,
@@ -66,14 +66,14 @@ def task_of(case: YardCase) -> Task:
 
 
 def prepare(rig: Rig, task: Task) -> None:
-    """The task's world, and the robot at its start."""
+    """Set up the task's world, with the robot at its start."""
     rig.prepare(task.models, task.start)
     if task.walk is not None:
         rig.wait(rig.person_listens, "the person")
 
 
 def drive(rig: Rig, task: Task, judge: Judge) -> Drive:
-    """From start to goal, or as far as it comes; the judge has seen the way."""
+    """Drive from start to goal, or as far as the robot gets; the judge gets all samples."""
     ended, pace = _watch(rig, judge, task)
     straight, outcome = math.dist(task.start[:2], task.goal[:2]), _outcome(judge, ended, task.goal)
     if outcome == outcomes.NOT_THERE:
@@ -89,12 +89,12 @@ def drive(rig: Rig, task: Task, judge: Judge) -> Drive:
 
 
 def _watch(rig: Rig, judge: Judge, task: Task) -> tuple[str, float]:
-    """Drives until the goal has ended; how, and the real-time factor meanwhile."""
+    """Watch until the goal has ended; returns how, and the real-time factor."""
     rig.send(task.goal)
     began, ended = time.monotonic(), None
     heard, walk, walking = began, task.walk, None  # None: the person waits
     while ended is None:
-        ended = rig.result()  # before the samples, so that those of the way there all count
+        ended = rig.result()  # before the samples, so that all of those before the end count
         for sample in rig.samples(LOOK_PERIOD):
             heard = time.monotonic()
             judge.see(sample)

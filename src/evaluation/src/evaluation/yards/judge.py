@@ -1,4 +1,4 @@
-"""Watches one drive, sample by sample: how far, how close, and whether anything was touched."""
+"""Judges one drive, sample by sample: distances, gaps and contacts."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from trial_worlds.clearance import CONTACT, clearance
 from trial_worlds.crossing import PERSON_RADIUS
 
 STANDING = 0.02   # m/s
-PATH_STEP = 0.02  # m between two points that are kept
+PATH_STEP = 0.02  # m between two recorded points
 OBSTACLE, PERSON, WALKED_INTO = (
     "touched an obstacle", "touched the person", "the person walked into the standing robot")
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Where robot and person were, by the simulator's own word."""
+    """Positions of robot and person, by the simulator."""
 
     time: float  # s, simulated
     robot: Place
@@ -28,7 +28,7 @@ class Sample:
 
 
 class Judge:
-    """Of one drive from its first sample on; after a contact nothing more counts."""
+    """Judges one drive from its first sample on; after a contact nothing more counts."""
 
     def __init__(self, cylinders: np.ndarray, radius: float):
         """`cylinders` (N, 2): centres, m, of circles of that radius; none in an empty room."""
@@ -36,12 +36,12 @@ class Judge:
         self._began: float | None = None
         self._last: Sample | None = None
         self.time = self.distance = 0.0  # s, m
-        self.to_obstacles = self.to_person = math.inf  # m of air, the least so far
+        self.to_obstacles = self.to_person = math.inf  # least gaps so far, m
         self.contact: str | None = None
-        self.path: list[tuple[float, ...]] = []  # s, x, y, yaw, where it had gone on
+        self.path: list[tuple[float, ...]] = []  # s, x, y, yaw, every PATH_STEP
 
     def see(self, sample: Sample) -> None:
-        """The next one."""
+        """Take the next sample."""
         if self.contact:
             return
         self._began = sample.time if self._began is None else self._began
@@ -54,7 +54,7 @@ class Judge:
         self._look(sample)
 
     def off(self, place: Place) -> float:
-        """m that the robot was from a place at last; inf before the first sample."""
+        """The robot's last distance from a place, m; inf before the first sample."""
         return math.inf if self._last is None else math.dist(self._last.robot[:2], place[:2])
 
     def _look(self, sample: Sample) -> None:

@@ -1,4 +1,4 @@
-"""What became of the drives: one by one, together, as a table and as report.json."""
+"""The drives' results: one by one, together, as a table and as report.json."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from evaluation.trial.report import cell, grouped, mean
 YARDS, CROSSINGS = "yards", "crossings"  # the two sets of drives
 REACHED, CONTACT, WALKED_INTO, GIVEN_UP, LATE, NOT_THERE = (
     "reached", "contact", "walked into", "given up", "late", "called reached")
-LEAST_SHARE = 0.95  # of the yards, and of the crossings but for those that persons ended
-BEST, WORST = 4.0, 8.0  # times the shortest time between which BARN's score falls
+LEAST_SHARE = 0.95  # of the yards, and of the crossings except those that people ended
+BEST, WORST = 4.0, 8.0  # multiples of the shortest time between which BARN's score falls
 
 
 @dataclass(frozen=True)
 class Drive:
-    """One; m, s."""
+    """The result of one drive; m, s."""
 
     set: str
     seed: int
@@ -27,17 +27,17 @@ class Drive:
     time: float
     distance: float
     straight_time: float  # of the straight line from start to goal at top speed
-    shortest_time: float  # of the shortest way that is wide enough, at top speed
-    to_obstacles: float | None  # the least air; None: there were none
+    shortest_time: float  # of the shortest path that is wide enough, at top speed
+    to_obstacles: float | None  # the least gap; None: there were none
     to_person: float | None
     recoveries: list[str]
-    slow_cycles: int  # move_base's own words that it was too slow, at most one in 5 s
+    slow_cycles: int  # move_base's warnings that it was too slow, at most one in 5 s
     real_time_factor: float
     drawn: dict = field(default_factory=dict)  # the yard's difficulty, or the person's walk
 
     @property
     def reached(self) -> bool:
-        """Did it come to its goal without touching anything?"""
+        """Whether it reached its goal without touching anything."""
         return self.outcome == REACHED
 
     @property
@@ -50,12 +50,12 @@ class Drive:
 
     @property
     def name(self) -> str:
-        """Of its case, and as its files are called."""
+        """Its case's name, also that of its files."""
         return f"{self.set}-{self.seed}-{self.repeat}"
 
     @property
     def line(self) -> str:
-        """On one line."""
+        """A one-line summary."""
         why = f" ({self.why})" if self.why else ""
         air = self.to_obstacles if self.to_person is None else self.to_person
         recovered = f", {len(self.recoveries)} recoveries" if self.recoveries else ""
@@ -78,7 +78,7 @@ COLUMNS = {
 
 
 def summarize(drives: Sequence[Drive]) -> list[dict]:
-    """One for each set; means are of drives that reached the goal, None where none did."""
+    """A summary for each set; means are of drives that reached the goal, None if none did."""
     return [_summary(*group) for group in grouped(drives, lambda drive: drive.set).items()]
 
 

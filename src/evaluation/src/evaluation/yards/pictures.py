@@ -1,4 +1,4 @@
-"""trials.png: time, air and difficulty; yards.png, crossings.png: every way from above."""
+"""trials.png: time, gap and difficulty; yards.png, crossings.png: every path from above."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TILE_WIDTH, CAPTION = 3.4, 0.25  # inches
 COLOURS = {REACHED: "#1b6ca8", "called reached": "#16a085", "contact": "#c0392b",
            "walked into": "#8e44ad", "given up": "#c9782f", "late": "#7a8b99"}
 
-# Set, what is along, across, and their values.
+# Set, labels of x and y axis, and their values.
 PANELS: tuple[tuple[str, str, str, Callable[[Drive], float], Callable[[Drive], float]], ...] = (
     (YARDS, "yard", "time by straight-line time",
      lambda drive: drive.seed, lambda drive: drive.time / drive.straight_time),
@@ -57,7 +57,7 @@ def _draw(axes: object, drives: Sequence[Drive], x: Callable[[Drive], float],
 
 
 def write_sheets(drives: Sequence[Drive], out: Path) -> list[str]:
-    """Write them below `out`; returns their names."""
+    """Write yards.png and crossings.png below `out`; returns their names."""
     written = []
     sets = grouped(drives, lambda drive: drive.set)
     for kind, edges, ground in ((YARDS, YARD, _draw_yard), (CROSSINGS, ROOM, _draw_walk)):
@@ -75,7 +75,7 @@ def write_sheets(drives: Sequence[Drive], out: Path) -> list[str]:
 
 
 def _draw_yard(axes: object, drive: Drive) -> None:
-    """The columns, and the shortest way."""
+    """Draw the columns and the shortest path."""
     from matplotlib.collections import EllipseCollection
 
     yard = draw_yard(drive.seed)
@@ -87,7 +87,7 @@ def _draw_yard(axes: object, drive: Drive) -> None:
 
 
 def _draw_walk(axes: object, drive: Drive) -> None:
-    """Where the person walks, as wide as they are."""
+    """Draw the strip that the person walks through."""
     walk = Crossing(**drive.drawn)
     begin, yaw = np.array(walk.begin[:2]), walk.heading
     ends = np.array([begin, begin + 2 * APPROACH * np.array([np.cos(yaw), np.sin(yaw)])])
@@ -96,7 +96,7 @@ def _draw_walk(axes: object, drive: Drive) -> None:
 
 
 def _draw_ways(axes: object, drives: list[Drive], out: Path) -> tuple[str, bool]:
-    """What was driven, with a dot where it did not come to its goal; how the drives ended."""
+    """Draw the paths, with a dot where one missed its goal; returns the caption and success."""
     for drive in drives:
         path = out / "drives" / f"{drive.name}.json"
         if path.exists():

@@ -1,4 +1,4 @@
-"""The running simulator with the waffle and move_base: what trials do with it, and see of it."""
+"""The running simulator with the waffle and move_base, as the trials use and observe it."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from run_session.simulator import WAFFLE, Place, call, models, place_of, pose_me
 from trial_worlds.models import PERSON_TOPIC
 
 START_LIMIT, ANSWER_LIMIT = 120.0, 30.0  # s, wall
-FRESH = 0.7  # s, simulated: the laser's 5 Hz, its transform and the costmap's 10 Hz
+FRESH = 0.7  # s, simulated, to renew costmaps: laser at 5 Hz, its transform, costmap at 10 Hz
 PERSON = "person"
 UNDER_WAY = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING, GoalStatus.RECALLING)
-SLOW = "missed its desired rate"  # move_base's own words
+SLOW = "missed its desired rate"  # in move_base's warning
 LOOK_PERIOD = 0.02  # s, wall
 call_service = partial(call, wait=ANSWER_LIMIT)
 
 
 class Rig:
-    """Made once a run; all of its calls may raise RunError."""
+    """Made once per run; all of its methods may raise RunError."""
 
     def __init__(self, launched: Launched, real_time_factor: float, parameters: Path):
         self._launched = launched
@@ -56,9 +56,9 @@ class Rig:
                   "the action server of move_base", START_LIMIT)
 
     def prepare(self, models: dict[str, tuple[str, Place]], start: Place) -> None:
-        """These models (SDF and place by name) instead of the last; the robot stands at `start`.
+        """Replace the models by these (SDF and pose by name) and put the robot at `start`.
 
-        Its costmaps know only what it sees from there.
+        Its costmaps then hold only what it sees from there.
         """
         for name in sorted(self._there):
             call_service("/gazebo/delete_model", DeleteModel, name)
@@ -76,9 +76,9 @@ class Rig:
         self._slow_before = self._launched.count_said(SLOW)
 
     def send(self, goal: Place) -> None:
-        """Have the robot drive to a place."""
+        """Send the robot a goal."""
         message = MoveBaseGoal()
-        message.target_pose.header.frame_id = "odom"  # the drive takes it from the world
+        message.target_pose.header.frame_id = "odom"  # the drive plugin's odometry is the true pose
         message.target_pose.pose = pose_message(goal)
         self._goal = self._client.send_goal(message)
 
@@ -92,23 +92,23 @@ class Rig:
         return f"{GoalStatus.to_string(status).lower()}: {self._goal.get_goal_status_text()}"
 
     def end_goal(self) -> None:
-        """Returns when no goal is pursued any more."""
+        """Cancel the goal if it is active; returns when it has ended."""
         if self.result() is None:
             self._goal.cancel()
             self.wait(lambda: self.result() is not None, "the end of the cancelled goal")
 
     def walk(self, speed: float) -> None:
-        """Have the person walk on at this speed, m/s; 0: stand."""
+        """Have the person walk at this speed, m/s; 0: stand."""
         message = Twist()
         message.linear.x = speed
         self._walk.publish(message)
 
     def person_listens(self) -> bool:
-        """Whether the person would obey."""
+        """Whether the person's velocity commands have a subscriber."""
         return self._walk.get_num_connections() > 0
 
     def samples(self, wait: float = 0.0) -> list[Sample]:
-        """All since the last call and within this time, s, wall."""
+        """All samples since the last call, after waiting this long, s, wall."""
         time.sleep(wait)
         self._launched.check(rospy.get_time())
         found = []
@@ -117,13 +117,13 @@ class Rig:
         return found
 
     def pause(self, seconds: float) -> None:
-        """Let so much simulated time go by."""
+        """Wait for this long, s, simulated."""
         until = rospy.get_time() + seconds
         self.wait(lambda: rospy.get_time() >= until, "simulated time")
 
     @property
     def slow_cycles(self) -> int:
-        """Since `prepare`; move_base says that it was too slow at most once in 5 s."""
+        """Number since `prepare`; move_base warns that it was too slow at most once in 5 s."""
         return self._launched.count_said(SLOW) - self._slow_before
 
     def wait(self, condition: Callable[[], bool], what: str, limit: float = ANSWER_LIMIT) -> None:

@@ -1,4 +1,4 @@
-"""`make navigation-trials`: through narrow yards and past persons, by move_base without a map."""
+"""`make navigation-trials`: move_base without a map through narrow yards and past people."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PARAMETERS = Path("config") / "yard.yaml"
 
 
 class YardTrial(ReportedTrial):
-    """All drives in one simulator, which is brought up for the first of them."""
+    """All drives run in one simulator, which is started for the first of them."""
 
     program = "navigation_trials"
     does = ("Drive the waffle by move_base, without a map, through narrow yards and past persons"
@@ -77,7 +77,7 @@ class YardTrial(ReportedTrial):
         prepare(self._rig, self._task)
 
     def run(self) -> Drive:
-        """The drive; where it went stands below drives/."""
+        """Run the drive; its path is written below drives/."""
         judge = Judge(self._task.cylinders, RADIUS)
         drove = drive(self._rig, self._task, judge)
         path = self._out / "drives" / f"{self._case.name}.json"
@@ -87,7 +87,7 @@ class YardTrial(ReportedTrial):
         return drove
 
     def passed(self, results: Sequence[Drive]) -> bool:
-        """Enough goals reached, and nobody touched by the robot; one that stands touches nobody."""
+        """Whether enough goals were reached, and the robot, while moving, touched nobody."""
         touched = any(d.set == CROSSINGS and d.outcome == outcomes.CONTACT for d in results)
         sets = grouped((d for d in results if d.outcome != outcomes.WALKED_INTO), lambda d: d.set)
         shares = [sum(d.reached for d in found) / len(found) for found in sets.values()]

@@ -1,1 +1,1 @@
-"""One module a check: look(file, limits) gives its findings, one after the other."""
+"""One module for each check: look(file, limits) yields its findings."""

@@ -1,4 +1,4 @@
-"""An action server that refuses: addInts, learning_action/AddInts."""
+"""An action server that aborts unsuitable goals: addInts, learning_action/AddInts."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from exercises.finding import Finding, holds
 from exercises.node import START, running
 
 NAME = "addInts"
-BESIDE = -3, -1, 0, 3  # goals, beside the least one that makes sense
+BESIDE = -3, -1, 0, 3  # test goals, relative to the least valid one
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """What is too small ends as aborted, all else with its sum."""
+    """Goals that are too small must be aborted, all others succeed with their sum."""
     least = round(limits["least"])
     with running(file) as until:
-        # Not SimpleActionClient: it misses an end that comes before its send_goal() has returned.
+        # Not SimpleActionClient: it misses a result that comes before its send_goal() has returned.
         client = actionlib.ActionClient(NAME, AddIntsAction)
         if not until(lambda: client.wait_for_server(rospy.Duration(0.1)), START):
             raise Mistake(f"{file}: offers no action {NAME} of type learning_action/AddInts")

@@ -1,4 +1,4 @@
-"""Messages in a bag at chosen times: what the program writes into the folder that it runs in."""
+"""A program that writes a bag with messages at given times into its working directory."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ runpy.run_path(sys.argv[1], run_name="__main__")
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """So many messages, so far apart, without waiting."""
+    """The bag must have the right number of messages and intervals, written without waiting."""
     compiled(file)
     with tempfile.TemporaryDirectory() as folder:
         try:

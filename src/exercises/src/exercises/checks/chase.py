@@ -9,12 +9,12 @@ from pathlib import Path
 from exercises.finding import Finding, at_least, near
 from exercises.program import load, numbers, part
 
-STEP = 0.1  # s, as the lesson's loop
+STEP = 0.1  # s, as in the lesson's loop
 CALL = "follow(x, y)"
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """It comes as near as asked, stands there, never came nearer, and does not drive backwards."""
+    """It must come to the given distance, stop, never be nearer, never drive backwards."""
     follow = part(load(file), CALL)
     target, (x, y, yaw), apart, speed = (5.5, 5.5), (1.0, 1.0, math.pi), [], 0.0
     for _ in range(round(limits["seconds"] / STEP)):

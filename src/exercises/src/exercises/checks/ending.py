@@ -1,4 +1,4 @@
-"""The last command of a node that Ctrl-C ends."""
+"""The last command of a node that is ended by Ctrl-C."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TOPIC = "/turtle1/cmd_vel"
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """It drives; after Ctrl-C the turtle stands."""
+    """The turtle must drive, and stop after Ctrl-C."""
     with running(file) as until:
         commands: list[Twist] = []
         rospy.Subscriber(TOPIC, Twist, commands.append, queue_size=10)
@@ -31,7 +31,7 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
             raise Mistake(f"{file}: publishes nothing on {TOPIC}")
         try:
             os.kill(_process(commands[0]._connection_header["callerid"]), signal.SIGINT)
-        except (rosgraph.MasterError, OSError):  # it is about to end by itself
+        except (rosgraph.MasterError, OSError):  # it is just ending by itself
             until(lambda: False, START)
         time.sleep(limits["seconds"])
         last = commands[-1].linear.x, commands[-1].angular.z

@@ -1,4 +1,4 @@
-"""Through halls with columns by the laser: command(angles, ranges), by a robot without slip."""
+"""Driving by laser through halls with columns: command(angles, ranges), by a robot without slip."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CALL = "command(angles, ranges)"
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """The finish is reached in each hall, and nothing touched."""
+    """It must reach the finish in each hall without touching anything."""
     command = part(load(file), CALL)
     drives = [hall.drive(lambda *scan: numbers(command(*scan), 2, CALL), seed, limits["seconds"])
               for seed in range(round(limits["halls"]))]

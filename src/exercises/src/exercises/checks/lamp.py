@@ -1,4 +1,4 @@
-"""Which lamp is lit: lit_lamp(picture), on drawn lamps beside lines and a bar."""
+"""Which lamp is lit: lit_lamp(picture), on drawn images of lamps, lines and a bar."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from exercises.program import load, part
 
 WIDTH, HEIGHT, ASPHALT = 320, 240, (60, 60, 60)  # px, px, BGR
 LAMPS = {"red": (0, 0, 255), "yellow": (0, 255, 255), "green": (0, 255, 0)}  # BGR
-RADIUS, LINE = (6, 12), 14  # px: from, to; how wide a line is
+RADIUS, LINE = (6, 12), 14  # px: range of a lamp's radius; width of a line
 CALL = "lit_lamp(picture)"
 
 
 def street(random: np.random.Generator, lamp: str | None) -> np.ndarray:
-    """A yellow line up the picture, a red bar across it, and the lamp above, if any."""
+    """An image with a vertical yellow line, a red bar across it, and the lamp above, if any."""
     picture = np.full((HEIGHT, WIDTH, 3), ASPHALT, np.uint8)
     column, row = random.integers(40, WIDTH - 40), random.integers(110, 130)
     cv2.rectangle(picture, (column, 150), (column + LINE, HEIGHT), LAMPS["yellow"], -1)
@@ -30,7 +30,7 @@ def street(random: np.random.Generator, lamp: str | None) -> np.ndarray:
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """The lamp is named whatever else is coloured, and nothing where none is lit."""
+    """It must name the lit lamp despite other coloured objects, and none if none is lit."""
     lit_lamp, random = part(load(file), CALL), np.random.default_rng(0)
     each = round(limits["pictures"])
     right = {lamp: sum(lit_lamp(street(random, lamp)) == lamp for _ in range(each))

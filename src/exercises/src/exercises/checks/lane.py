@@ -1,4 +1,4 @@
-"""A mask for a lane's lines that shade does not disturb: line_mask(grey), on the painted track."""
+"""A mask of a lane's lines that is robust to shade: line_mask(grey), on the painted track."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ CALL = "line_mask(grey)"
 
 
 def pictures(count: int) -> Iterator[tuple[tuple[float, float, float], np.ndarray]]:
-    """Pose (x, y, yaw) in the lane's middle and what the car's camera sees there, BGR."""
+    """Yields poses (x, y, yaw) in the lane's middle, each with the car's camera image, BGR."""
     course = load_course("lane")
     settings = load_settings(find_file("lane_keeping/config/lane_keeping.yaml"))
     track = load_track(course.track_file)
@@ -52,7 +52,7 @@ def pictures(count: int) -> Iterator[tuple[tuple[float, float, float], np.ndarra
 
 def beside(pixel: tuple[float, float], pose: tuple[float, float, float], view: RoadView,
            track: Track) -> float:
-    """m, how far from the lane's middle the ground under a pixel is."""
+    """Distance (m) from the lane's middle to the ground point at a pixel."""
     ahead, left = view.to_ground(np.array(pixel))
     x, y, yaw = pose
     return abs(track.nearest(x + ahead * math.cos(yaw) - left * math.sin(yaw),
@@ -60,7 +60,7 @@ def beside(pixel: tuple[float, float], pose: tuple[float, float, float], view: R
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """The lesson's windows find the lane's middle in the mask, all round the track."""
+    """The lesson's sliding windows must find the lane's middle in the mask, all round the track."""
     line_mask = part(load(file), CALL)
     settings = load_settings(find_file("lane_keeping/config/lane_keeping.yaml"))
     view, track = road_view(settings, *SIZE), load_track(load_course("lane").track_file)

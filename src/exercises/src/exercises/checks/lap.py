@@ -1,4 +1,4 @@
-"""A lap on learning_topic's course in the simulator's core, picture by picture, without ROS."""
+"""A lap on learning_topic's course in the simulator's core, image by image, without ROS."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CALL = "Driver().drive(image, time)"
 
 
 def drive(driver: Any, off_course: float) -> dict[str, Any]:
-    """LapTask's report of a lap by driver.drive(BGR image, s) -> m/s, rad/s."""
+    """LapTask's report of a lap driven by driver.drive(BGR image, s) -> m/s, rad/s."""
     course = load_course("line_follow")
     task, simulation = LapTask(course, 1), Simulation(course, SIZE, TIMESTEP)
     episode = draw(Randomisation(), np.random.default_rng(0))
@@ -42,7 +42,7 @@ def drive(driver: Any, off_course: float) -> dict[str, Any]:
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """Closed, as quick as asked for, and near the line."""
+    """The lap must be completed, fast enough, and close to the line."""
     report = drive(part(load(file), "Driver()")(), limits["off_course"])
     closed = bool(report["lap_times_s"])
     yield holds("the lap", "closed" if closed else

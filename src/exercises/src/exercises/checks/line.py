@@ -1,4 +1,4 @@
-"""Where the line is near the robot: find_line(image), on drawn bends."""
+"""The line's column near the robot: find_line(image), on drawn bends."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CALL = "find_line(image)"
 
 
 def bend(near: float, swing: float) -> np.ndarray:
-    """A picture of a line that starts at column `near` and is `swing` px aside at the horizon."""
+    """An image of a line that starts at column `near` and is `swing` px aside at the horizon."""
     rows = np.arange(HORIZON, HEIGHT)
     far = (HEIGHT - rows) / (HEIGHT - HORIZON)
     middle, half = near + swing * far**2, 3 + 15 * (1 - far)
@@ -30,7 +30,7 @@ def bend(near: float, swing: float) -> np.ndarray:
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """The column in the near rows counts; what is far away does not."""
+    """It must return the line's column in the near rows, whatever is far away."""
     find_line, random = part(load(file), CALL), np.random.default_rng(0)
     errors, misplaced = [], 0
     for near, swing in random.uniform((150, -300), (490, 300), (round(limits["pictures"]), 2)):

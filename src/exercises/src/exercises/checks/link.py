@@ -17,7 +17,7 @@ LINK, BASE, FOOT = "rear_camera", "base_link", "base_footprint"
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """Its joint holds it, at the wanted place on the ground's frame."""
+    """The joint must be fixed and the link at the wanted pose."""
     try:
         tree = read_tree(read_xml_file(file))
     except SimulationError as error:

@@ -12,7 +12,7 @@ from exercises.finding import Finding, at_least, at_most
 from exercises.program import load, mask_of, part
 
 SIZE = 120, 90  # px, rows and columns of each stripe
-STRIPES = {  # hue 0..180, saturation and value 0..255: from, to, as in the course's light
+STRIPES = {  # hue 0..180, saturation and value 0..255: bounds, as in the course's light
     "white": ((0, 0, 140), (180, 25, 255)),
     "yellow": ((24, 150, 120), (34, 255, 255)),
     "asphalt": ((0, 0, 20), (180, 40, 80)),
@@ -20,7 +20,7 @@ STRIPES = {  # hue 0..180, saturation and value 0..255: from, to, as in the cour
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """White stays, yellow and asphalt go; shares of a stripe's pixels."""
+    """White must be kept, yellow and asphalt removed, by shares of a stripe's pixels."""
     white_mask = part(load(file), "white_mask(image)")
     for name, (low, high) in STRIPES.items():
         pixels = np.random.default_rng(0).integers(low, high, (*SIZE, 3), np.uint8, endpoint=True)

@@ -17,7 +17,7 @@ TOLERANCE = 0.001  # m/s
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """Without the parameter the default; what is set while it drives; the default again."""
+    """Its speed must be the default, then the value set while it drives, then the default again."""
     with running(file) as until:
         commands: list[Twist] = []
         rospy.Subscriber(TOPIC, Twist, commands.append, queue_size=10)

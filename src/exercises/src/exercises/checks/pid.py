@@ -11,14 +11,14 @@ import numpy as np
 from exercises.finding import Finding, at_most
 from exercises.program import load, numbers, part
 
-PULL = 0.15  # rad/s to the left, that nobody has commanded
+PULL = 0.15  # rad/s to the left, besides the command
 SPEED, AHEAD, PX_PER_M = 0.3, 0.3, 2700.0  # m/s; m from the axle to the rows; px (of 1920)
-RATE, LATE, SECONDS = 30, 6, 20.0  # pictures a second; so many pictures late; s
-SIDEWAYS = 0.1  # m beside the line at the start, to the left of it
+RATE, LATE, SECONDS = 30, 6, 20.0  # images per second; delay in images; duration, s
+SIDEWAYS = 0.1  # m to the left of the line at the start
 
 
 def offsets(steer) -> np.ndarray:
-    """(N,) px, how far right of the image's middle the line is, picture by picture."""
+    """The line's offset to the right of the image's middle, px, in each image (N,)."""
     left, heading, waiting, found = SIDEWAYS, 0.0, [0.0] * LATE, []
     for picture in range(int(SECONDS * RATE)):
         found.append(PX_PER_M * (left + AHEAD * math.sin(heading)))
@@ -31,7 +31,7 @@ def offsets(steer) -> np.ndarray:
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """What I and D are for: nothing remains, and it does not swing."""
+    """No steady-state error (the purpose of I) and no oscillation (that of D)."""
     seen = offsets(part(load(file), "Driver()")().steer)
     last = seen[-2 * RATE:] if len(seen) == int(SECONDS * RATE) else seen
     yield at_most("line beside the image's middle, mean of the last 2 s",

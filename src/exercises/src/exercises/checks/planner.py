@@ -1,4 +1,4 @@
-"""A global planner that minds costs: the class Planner, on a costmap with a wall to go round."""
+"""A global planner that considers costs: class Planner, on a costmap with a wall to go round."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, Costmap
 
 CELL, SIDE = 0.05, 100  # m; cells along each side of the room
 WALL = slice(45, 55), slice(0, 60)  # rows, columns
-INSCRIBED_M, DECAY = 0.2, 3.0  # m; 1/m, of the cost beyond
+INSCRIBED_M, DECAY = 0.2, 3.0  # inscribed radius, m; decay of the cost beyond it, 1/m
 START, GOAL = (-1.5, -1.5), (-1.5, 1.5)  # m
 CALL = "Planner().make_plan(start, goal)"
 
 
 def costmap(walls: tuple[tuple[slice, slice], ...]) -> Costmap:
-    """The room with those cells occupied, and what lies round them inflated."""
+    """The room's costmap with these cells occupied, inflated."""
     free = np.ones((SIDE, SIDE), np.uint8)
     free[0], free[-1], free[:, 0], free[:, -1] = 0, 0, 0, 0
     for wall in walls:
@@ -37,7 +37,7 @@ def costmap(walls: tuple[tuple[slice, slice], ...]) -> Costmap:
 
 
 def plan(module, grid: Costmap) -> np.ndarray:
-    """(N, 2) m, the path; Mistake where the answer is no list of poses."""
+    """The path (N, 2), m; Mistake if the planner returns no list of poses."""
     planner = part(module, "Planner()")()
     planner.initialize("Planner", SimpleNamespace(snapshot=lambda: grid))
     poses = [PoseStamped(), PoseStamped()]
@@ -51,7 +51,7 @@ def plan(module, grid: Costmap) -> np.ndarray:
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """A way without gaps and contacts, through low costs, not much longer; none where none is."""
+    """A path without gaps and contacts, at low cost, not much longer; none if there is none."""
     module, grid = load(file), costmap((WALL,))
     path = plan(module, grid)
     ends = len(path) > 1 and np.allclose(path[[0, -1]], (START, GOAL), atol=CELL)

@@ -1,4 +1,4 @@
-"""A static frame: world -> radar as the program publishes it."""
+"""A static transform, world -> radar, as published by the program."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ POINT = 10.0, 2.0, 3.0  # m, in the radar's frame
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """Where in the world the radar's point is."""
+    """The radar's point must be at the right place in the world."""
     with running(file) as until:
         buffer = tf2_ros.Buffer()
         tf2_ros.TransformListener(buffer)

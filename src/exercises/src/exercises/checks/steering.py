@@ -1,4 +1,4 @@
-"""A controllers' file: the racecar's steering hinges, in the simulator's core."""
+"""A controllers' YAML file: the racecar's steering hinges, in the simulator's core."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from exercises.errors import CannotCheck, Mistake
 from exercises.finding import Finding, near
 
 JOINTS = "left_steering_joint", "right_steering_joint"
-MOST_GAIN = 1e9  # of any kind
+MOST_GAIN = 1e9  # of P, I and D
 
 
 def read(file: Path) -> None:
-    """CannotCheck where it is not valid YAML, Mistake where it lacks what controllers need."""
+    """CannotCheck if it is not YAML; Mistake if a required setting is missing or wrong."""
     try:
         table = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise CannotCheck(f"{file}: not valid YAML: {' '.join(str(error).split())[:200]}") \
             from error
     if not isinstance(table, dict) or not isinstance(table.get("racecar"), dict):
@@ -39,7 +39,7 @@ def read(file: Path) -> None:
 
 
 def _wrong_in(entry: object) -> str | None:
-    """What a controller lacks, or has of another kind than it must be."""
+    """A controller's missing setting, or one of a wrong type, in words; None: all are right."""
     if not isinstance(entry, dict) or not isinstance(entry.get("type"), str):
         return "lacks `type`"
     if "JointStateController" in entry["type"] and "pid" not in entry:  # it moves nothing
@@ -56,7 +56,7 @@ def _wrong_in(entry: object) -> str | None:
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """Both hinges turn where they are told, on a standing car."""
+    """Both hinges must turn to the commanded angles, on a standing car."""
     read(file)
     course = load_course("race")
     text = expand(find_file(course.robot), find_package=package_folder)

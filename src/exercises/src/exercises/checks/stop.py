@@ -1,4 +1,4 @@
-"""Stop before a red cylinder: drive(picture), by drawn pictures of a car without slip."""
+"""Stopping before a red cylinder: drive(picture), on drawn images, for a car without slip."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from exercises.finding import Finding, at_least, near
 from exercises.program import load, numbers, part
 
 WIDTH, HEIGHT, HFOV = 640, 480, 1.3962634  # px, px, rad: as my_robot's camera
-RADIUS, TALL, LENS = 0.2, 0.6, 0.25  # m: the cylinder, and how high the lens is
+RADIUS, TALL, LENS = 0.2, 0.6, 0.25  # m: the cylinder's size, and the camera's height
 RED, FLOOR, STEP = (20, 20, 200), (150, 150, 150), 0.2  # BGR, BGR, s
 FOCAL = WIDTH / 2 / math.tan(HFOV / 2)  # px
 CALL = "drive(picture)"
 
 
 def view(ahead: float, left: float) -> np.ndarray:
-    """The BGR picture of a cylinder whose axis is there in the camera's frame, m."""
+    """The BGR image of a cylinder whose axis is `ahead`, `left` (m) of the camera."""
     picture = np.full((HEIGHT, WIDTH, 3), FLOOR, np.uint8)
     if ahead > RADIUS:
         near_side = ahead - RADIUS
@@ -32,7 +32,7 @@ def view(ahead: float, left: float) -> np.ndarray:
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """From 4 m away, turned away by 20 degrees: it drives up, and stands where it should."""
+    """From 4 m away, turned by 20 degrees, it must drive up and stop at the right distance."""
     drive = part(load(file), CALL)
     x, y, yaw, apart, speed, turn = -4.0, 0.0, math.radians(20), [], 0.0, 0.0
     for _ in range(round(limits["seconds"] / STEP)):

@@ -1,4 +1,4 @@
-"""A service that says whether the turtle drives: /turtle_drive, std_srvs/SetBool."""
+"""A service that starts and stops the turtle: /turtle_drive, std_srvs/SetBool."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from exercises.finding import Finding, holds
 from exercises.node import START, running
 
 SERVICE, TOPIC = "/turtle_drive", "/turtle1/cmd_vel"
-QUIET = 0.5  # s: what was sent before a call has arrived by then
-PATIENCE = 5.0  # s, for the first command of one that shall drive
+QUIET = 0.5  # s, by which messages sent before a call have arrived
+PATIENCE = 5.0  # s, for the first command after it was switched on
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """true: it drives; true again: it still does; false: it stands, and stays so."""
+    """true: it must drive; true again: still drive; false: stop, and stay so."""
     with running(file) as until:
         speeds: list[float] = []
         rospy.Subscriber(TOPIC, Twist, lambda msg: speeds.append(msg.linear.x), queue_size=10)

@@ -1,4 +1,4 @@
-"""A turtle that stops by itself: from /turtle1/pose to /turtle1/cmd_vel, with a made-up turtle."""
+"""A node that stops a (simulated) turtle: from /turtle1/pose to /turtle1/cmd_vel."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from turtlesim.msg import Pose
 from exercises.finding import Finding, holds, near
 from exercises.node import PAUSE, START, running
 
-ALONG = 5.5  # m, where it starts, and its y
+ALONG = 5.5  # m, x of its start, and its y
 
 
 class Turtle:
-    """It drives along x with the last command."""
+    """A turtle that drives along x with the last command."""
 
     def __init__(self) -> None:
         self.x, self.speed, self.commands = ALONG, 0.0, 0
@@ -27,14 +27,14 @@ class Turtle:
         self.speed, self.commands = command.linear.x, self.commands + 1
 
     def live(self) -> bool:
-        """Goes on for a step and says where it is; whether any command has come."""
+        """Advance by one step and publish the pose; returns whether any command has come."""
         self.x += PAUSE * self.speed
         self._poses.publish(Pose(x=self.x, y=ALONG, linear_velocity=self.speed))
         return self.commands > 0
 
 
 def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
-    """It sets off, and stands before the wall."""
+    """It must set off, and stop before the wall."""
     with running(file) as until:
         turtle = Turtle()
         commanded = until(turtle.live, START)

@@ -1,4 +1,4 @@
-"""Follows the cylinder at a distance: PID on bearing and distance, search where it was last."""
+"""Follows the cylinder at a distance: PID on bearing and distance; searches when it is lost."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from ai_robot_tracking.settings import number
 
 FOLLOWING, WAITING, SEARCHING = "following", "waiting", "searching"
 LONGEST_PERIOD = 0.2  # s that one image may count for
-RATE_SMOOTHING = 0.3  # s over which the target's own turn round the robot is taken
-LEAP = 0.5            # rad, or share of the distance: farther from where it was is another thing
+RATE_SMOOTHING = 0.3  # s over which the target's bearing rate is smoothed
+LEAP = 0.5            # rad, or share of the distance: a larger jump means another object
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Sighting:
 
 
 def sighting(blob: Blob, shape: tuple[int, int], settings: FollowerSettings) -> Sighting:
-    """What a blob means if it is the target; `shape`: the picture's rows and columns."""
+    """The sighting if the blob is the target; `shape`: the image's rows and columns."""
     return Sighting(
         bearing_of(blob, shape[1], settings.camera_hfov),
         distance_of(blob, shape, settings.camera_hfov, settings.target_radius,
@@ -67,7 +67,7 @@ def sighting(blob: Blob, shape: tuple[int, int], settings: FollowerSettings) -> 
 
 
 class Follower:
-    """One picture after the other; says what to drive."""
+    """Takes one image after another; returns velocities."""
 
     def __init__(self, settings: FollowerSettings):
         self.settings = settings
@@ -90,13 +90,13 @@ class Follower:
         return speed, self._turning
 
     def halt(self) -> None:
-        """The robot is being made to stand: begin anew with the next picture."""
+        """The robot is being stopped: start afresh with the next image."""
         self._turn.restart()
         self._speed.restart()
         self._time, self._turning, self._drift = None, 0.0, 0.0
 
     def _look(self, picture: np.ndarray) -> Sighting | None:
-        """What is nearest to where the target was; after a loss the largest that has its form."""
+        """The blob nearest to the target's last place; after a loss the largest of its shape."""
         s, shape = self.settings, picture.shape[:2]
         mask = red_mask(picture, s.colour)
         blobs = find_blobs(mask, s.least_radius)

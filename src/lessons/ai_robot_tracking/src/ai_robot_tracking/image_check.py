@@ -1,11 +1,11 @@
-"""Whether a camera's image can be driven by: rightly encoded, not blank, not frozen."""
+"""Checks that a camera image is usable: correctly encoded, not blank, not frozen."""
 
 from __future__ import annotations
 
 import numpy as np
 
 CHANNELS = {"bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4}  # encodings with colour that are read
-FROZEN_TIME = 0.5  # s of the same picture under way
+FROZEN_TIME = 0.5  # s with the same image while moving
 
 
 class BadImage(ValueError):
@@ -46,13 +46,13 @@ class ImageCheck:
     def look(self, picture: np.ndarray, time: float, moving: bool) -> None:
         """`picture` (rows, columns, 3) came at this time, s; `moving`: the robot was told to move.
 
-        Raises BadImage for one that is all of one colour, and for one that has stayed the same to
-        the byte for FROZEN_TIME in which the robot should have moved, until another one comes.
+        Raises BadImage for an image of a single colour, and for one that has been identical, byte
+        by byte, for FROZEN_TIME in which the robot should have moved, until another one comes.
         """
         if self._last is None or not np.array_equal(picture, self._last):
             self._last, self._same_since, self._frozen = picture, time, False
         elif (not moving and not self._frozen) or time < self._same_since:
-            self._same_since = time  # who stands sees the same; or time began anew
+            self._same_since = time  # a standing robot sees no change; or time was reset
         if (picture == picture[0, 0]).all():
             raise BadImage("it is blank: every pixel has the same colour")
         self._frozen = self._frozen or time - self._same_since >= FROZEN_TIME

@@ -1,4 +1,4 @@
-"""Finds the red target in a picture: the mask, the blobs in it, and what their size says."""
+"""Finds the red target in an image: mask, blobs, and distance from their size."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from ai_robot_tracking.settings import number
 
 KERNEL = np.ones((3, 3), np.uint8)
 PASSES = 2  # of erosion, then of dilation: specks vanish
-HIGH_ENOUGH = 0.7  # share of the target's height that its columns have
-EDGE_PX = 2  # a blob so near the picture's edge goes on beyond it
+HIGH_ENOUGH = 0.7  # least share of the target's height for a column to belong to it
+EDGE_PX = 2  # a blob this close to the image's edge is taken to be cut off
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Colour:
 
 @dataclass(frozen=True)
 class RedSettings:
-    """What both trackers' sections of the parameter file begin with."""
+    """The parameters shared by both trackers' sections of the parameter file."""
 
     hue_low: float = number(0, 180, "0..180; larger than hue_high: the range goes over 180")
     hue_high: float = number(0, 180, "0..180")
@@ -104,18 +104,18 @@ def distance_of(blob: Blob, shape: tuple[int, int], hfov: float, radius: float,
                 height: float) -> float:
     """m from the camera to the axis of an upright cylinder (radius, height, m), by its size.
 
-    `shape`: the picture's rows and columns. What hides a part of the cylinder, be it the picture's
-    edge or a thing before it, makes it look smaller: the larger of its two sizes counts.
+    `shape`: the image's rows and columns. Occlusion, by the image's edge or an object in front,
+    makes the cylinder look smaller: so the larger of its two apparent sizes counts.
     """
     focal = focal_length(shape[1], hfov)
     aslant = math.cos(bearing_of(blob, shape[1], hfov))
-    by_height = height * focal / (blob.height * aslant) + radius  # its near side is what is seen
+    by_height = height * focal / (blob.height * aslant) + radius  # its near side is visible
     by_width = math.hypot(radius, 2 * radius * focal / (blob.width * aslant**2))
     return min(by_height, by_width)
 
 
 def looks_upright(blob: Blob, shape: tuple[int, int], radius: float, height: float) -> bool:
-    """Whether the blob's form is that of such a cylinder; not asked where the edge cuts it."""
+    """Whether the blob has such a cylinder's shape; not checked if the image's edge cuts it."""
     rows, columns = shape
     if (blob.left <= EDGE_PX or blob.left + blob.width >= columns - EDGE_PX
             or blob.top <= EDGE_PX or blob.top + blob.height >= rows - EDGE_PX):
@@ -125,7 +125,7 @@ def looks_upright(blob: Blob, shape: tuple[int, int], radius: float, height: flo
 
 
 def split_off(mask: np.ndarray, blob: Blob, column: float, height: float) -> Blob:
-    """The part of a blob that is as high as the target, where a lower red thing touches it.
+    """The part of a blob that is as high as the target, if a lower red object touches it.
 
     `column` (px) is where the target's middle is expected, `height` (px) its height there.
     """

@@ -1,4 +1,4 @@
-"""What both trackers share: images in, commands out, and standing still whenever that is safer."""
+"""Shared by both trackers: images in, commands out, and stopping whenever that is safer."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Command = tuple[float, float]  # m/s; rad/s, left positive
 
 
 class TrackerNode:
-    """One command on cmd_vel for each image of camera/rgb/image_raw; zero for one that is no good.
+    """One command on cmd_vel for each image of camera/rgb/image_raw; zero for an unusable one.
 
     `drive(picture, time)` gets BGR (rows, columns, 3) and s, and says what to do; `mark(picture)`
     draws what was seen, for ~annotated; `halt()` is called when the robot is made to stand.
@@ -34,7 +34,7 @@ class TrackerNode:
                  halt: Callable[[], None] = lambda: None):
         self.image_timeout = image_timeout
         self._drive, self._mark, self._halt = drive, mark, halt
-        self._lock = threading.Lock()  # images, e-stop and timer come on threads of their own
+        self._lock = threading.Lock()  # images, e-stop and timer are on different threads
         self._check, self._bridge = ImageCheck(), cv_bridge.CvBridge()
         self._told: Command = (0.0, 0.0)
         self._stopped, self._waiting = False, True
@@ -49,7 +49,7 @@ class TrackerNode:
 
     @property
     def lock(self) -> threading.Lock:
-        """To hold while what `drive` uses is changed."""
+        """The lock to hold while changing anything that `drive` uses."""
         return self._lock
 
     def _take_image(self, message: Image) -> None:
@@ -73,11 +73,11 @@ class TrackerNode:
             self._annotated.publish(self._bridge.cv2_to_imgmsg(picture, "bgr8", message.header))
 
     def _is_old(self, stamp: rospy.Time) -> bool:
-        """Sent before, or before the last one; but much older is time that began anew."""
+        """Whether it is not newer than the last one; if much older, time was reset."""
         return bool(stamp) and rospy.Duration() <= self._stamp - stamp < rospy.Duration(1.0)
 
     def _look(self, message: Image) -> np.ndarray | None:
-        """The picture, or None and a warning where it is not to be driven by."""
+        """The image, or None, with a warning, if it is unusable."""
         try:
             picture = decode(message.encoding, message.width, message.height, message.step,
                              message.data)
@@ -92,7 +92,7 @@ class TrackerNode:
         """Stand still when images stop coming."""
         with self._lock:
             if rospy.get_time() < self._fresh:
-                self._fresh = rospy.get_time()  # time began anew
+                self._fresh = rospy.get_time()  # time was reset
             if rospy.get_time() - self._fresh <= self.image_timeout:
                 return
             rospy.logwarn_throttle(WARNING_PERIOD, "standing: no fresh image on %s for %g s",
@@ -103,7 +103,7 @@ class TrackerNode:
             self._send((0.0, 0.0))
 
     def _take_stop(self, message: Bool) -> None:
-        """True: stand until false comes, whatever is seen."""
+        """True: stand still until false comes, whatever the images show."""
         with self._lock:
             if message.data != self._stopped:
                 rospy.logwarn("e-stop: standing" if message.data else "e-stop is over")
@@ -118,7 +118,7 @@ class TrackerNode:
         self._commands.publish(message)
 
     def _end(self) -> None:
-        """Leave the robot standing: no image starts it again."""
+        """Stop the robot for good: no image starts it again."""
         self._timer.shutdown()
         self._images.unregister()
         with self._lock:

@@ -1,8 +1,8 @@
-"""How fast one may go at a zebra crossing: stops for whoever is on it or steps onto it.
+"""Limits the speed at a zebra crossing: stops for people who are on it or step onto it.
 
 A person counts as crossing within the lines and up to `kerb` beside them, and as waiting up to
 `waiting` beside them. Once the front is over the zebra's edge, only those between the lines count:
-who stands on the kerb waits until the robot has passed.
+people on the kerb wait until the robot has passed.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ import numpy as np
 from lane_keeping.settings import Settings
 from lane_keeping.zebra import Zebra
 
-MEMORY = 1.0  # s that a zebra is remembered when it is not seen, behind a person's legs say
-AT_ZEBRA = 0.3  # m before and behind a zebra that belong to it
+MEMORY = 1.0  # s for which an unseen zebra is remembered, e.g. if hidden by a person's legs
+AT_ZEBRA = 0.3  # m before and behind a zebra that count as part of it
 BODY = 0.12  # m from a person's feet to the body's side
 SIGHT_WITHOUT_ZEBRA = 1.5  # m ahead of the axle
-STANDING = 0.02  # m from where to stand: near enough
+STANDING = 0.02  # m from the stopping point: near enough
 
 
 class Crossing:
@@ -42,7 +42,7 @@ class Crossing:
         stamp: float,
         speed: float,
     ) -> float:
-        """The speed in m/s not to be exceeded; infinite where nobody is.
+        """The speed limit in m/s; infinite if nobody is there.
 
         people: (n, 2) m, ahead and left; lane_left: m to the left of the lane's centre line at so
         many m ahead; speed: m/s driven since the last picture.
@@ -80,7 +80,7 @@ class Crossing:
     def _look_at(
         self, people: np.ndarray, lane_left: Callable[[float], float]
     ) -> tuple[float, float]:
-        """Metres until where to stand (infinite: nobody crosses), and the speed past who waits."""
+        """Metres to the stopping point (infinite: none), and the speed past people waiting."""
         settings, half = self.settings, self.settings.lane_width / 2
         stand, slow = math.inf, math.inf
         for ahead, left in people:
@@ -100,5 +100,5 @@ class Crossing:
         return zebra is not None and zebra.near - AT_ZEBRA < ahead < zebra.far + AT_ZEBRA
 
     def _approach(self, way: float) -> float:
-        """The speed from which the robot brakes to a stand in so many m."""
+        """The speed from which the robot can brake to a stop within `way`, m."""
         return math.sqrt(2 * self.settings.braking * way) if way > STANDING else 0.0

@@ -1,4 +1,4 @@
-"""Pictures that cannot be trusted: wrongly encoded, blank, or frozen."""
+"""Detects unusable images: wrongly encoded, blank, or frozen."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def is_blank(image: np.ndarray, contrast: float) -> bool:
 
 
 class FrozenWatch:
-    """Tells when the camera repeats one picture, byte by byte, while the robot should move."""
+    """Detects that the camera repeats one image, byte by byte, while the robot should move."""
 
     def __init__(self, patience: float):
         self._patience = patience  # s

@@ -1,4 +1,4 @@
-"""What was seen of a lane: a second-order curve for each line, and the centre line between them.
+"""A detected lane: a second-order curve for each line, and the centre line between them.
 
 A curve is (3,) coefficients of column = a row^2 + b row + c, in pixels of the region of interest.
 """
@@ -13,7 +13,7 @@ from lane_keeping.road_view import RoadView
 
 LEFT, RIGHT = 1.0, -1.0
 MIN_SPAN = 20  # rows that a line's pixels must cover to tell its direction
-QUADRATIC_SPAN = 80  # rows from which on a bend can be told from a slant
+QUADRATIC_SPAN = 80  # rows needed to tell a bend from a slant
 NARROWEST, WIDEST = 0.6, 1.7  # lane widths that two lines may be apart; bends look wider
 
 
@@ -27,7 +27,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Marks:
-    """What a method looked at, to be drawn: boxes (x0, y0, x1, y1) and points (x, y), in px."""
+    """Where a method searched, for drawing: boxes (x0, y0, x1, y1) and points (x, y), in px."""
 
     boxes: tuple[tuple[int, int, int, int], ...] = ()
     points: np.ndarray | None = None
@@ -61,7 +61,7 @@ def make_lane(
 ) -> Lane | None:
     """The lane between two lines, or beside one; None without any.
 
-    Two lines that are too near or too far from each other cannot be a lane: the longer one counts.
+    Two lines that are too close or too far apart cannot be a lane: the longer one is used.
     """
     if left is not None and right is not None and not _are_a_lane(left, right, view):
         longer = np.ptp(left.rows) >= np.ptp(right.rows)

@@ -1,4 +1,4 @@
-"""Keeps a lane, picture by picture: what is seen, what to do about it, and what that is called."""
+"""Keeps a lane, image by image: detects, decides, and names the state."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LANE, PERSON, LOST, SEARCHING, STOPPED, BLANK, FROZEN = (
 
 @dataclass(frozen=True)
 class Decision:
-    """The command for one picture, and why."""
+    """The command for one image, and its reasons."""
 
     state: str
     speed: float = 0.0  # m/s
@@ -37,7 +37,7 @@ class Decision:
 
 
 class LaneKeeper:
-    """The lane's memory between pictures: the last plan, the crossing ahead, the last picture."""
+    """Keeps the state between images: the last plan, the crossing ahead, the last image."""
 
     def __init__(self, settings: Settings):
         self.settings = settings
@@ -49,11 +49,11 @@ class LaneKeeper:
         self.last = Decision(STOPPED)
 
     def step(self, image: np.ndarray, stamp: float, now: float | None = None) -> Decision:
-        """What to do about a BGR picture (h, w, 3) uint8.
+        """The decision for a BGR image (h, w, 3) uint8.
 
         stamp: s, when it was taken; now: s, when it came, for a camera whose stamps stand still.
         """
-        stamp = stamp or now or 0.0  # 0: a camera that does not say
+        stamp = stamp or now or 0.0  # 0: the camera sets no stamp
         moving = self.last.speed != 0 or self.last.turn != 0
         if is_blank(image, self.settings.blank_contrast):
             self.last = Decision(BLANK)
@@ -64,7 +64,7 @@ class LaneKeeper:
         return self.last
 
     def stand(self) -> None:
-        """Tell that the robot was stopped from outside."""
+        """Take note that the robot was stopped from outside."""
         self.last = Decision(STOPPED)
 
     def _drive(self, image: np.ndarray, stamp: float) -> Decision:
@@ -90,7 +90,7 @@ class LaneKeeper:
         if fresh:
             return LANE, plan.speed, plan.turn
         too_long = age > settings.lost_time + settings.search_time
-        if plan is None or too_long or age == 0:  # 0: stamps that stand still
+        if plan is None or too_long or age == 0:  # 0: stamps do not advance
             return STOPPED, 0.0, 0.0
         if age <= settings.lost_time:
             return LOST, min(plan.speed, settings.bend_speed), plan.turn

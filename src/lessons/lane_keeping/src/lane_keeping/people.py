@@ -1,8 +1,8 @@
 """Finds people: coloured blobs that stand on the ground and are upright.
 
-Road, lines and zebra have no colour, lawn and trees are green or brown: what is left of strong
-colour is clothing. Looked at is what lies below the horizon, which is at the lens's height on
-everything that stands on flat ground: a person's legs.
+Road, lines and zebra have no colour, lawn and trees are green or brown: any other strong colour is
+clothing. Only the part below the horizon is searched, which is at the lens's height on everything
+that stands on flat ground: people's legs.
 """
 
 from __future__ import annotations

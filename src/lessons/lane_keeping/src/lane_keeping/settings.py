@@ -138,7 +138,7 @@ def read_table(path: Path) -> dict:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise SettingsError(f"{path}: {error.strerror}") from error
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise SettingsError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") \
             from error
     if not isinstance(values, dict):

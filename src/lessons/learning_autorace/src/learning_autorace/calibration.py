@@ -47,7 +47,7 @@ def load_calibration(path: Path) -> Calibration:
     """The file's numbers; CalibrationError if it cannot be read or a number is missing or wild."""
     try:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise CalibrationError(f"{path}: cannot be read: {' '.join(str(error).split())[:200]}") \
             from error
     found = _numbers(path, values, TOP_LIMITS)

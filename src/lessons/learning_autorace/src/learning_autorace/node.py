@@ -1,4 +1,4 @@
-"""What all lessons share: the robot's senses, and a command for each picture."""
+"""Shared by all lessons: the robot's sensor data, and a command for each image."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ LASER_FORWARD = -0.032  # m, from base_footprint
 
 @dataclass
 class Seen:
-    """All that the robot knows when a picture comes."""
+    """The robot's sensor data when an image comes."""
 
     time: float  # s
     image: np.ndarray  # (h, w, 3) BGR
@@ -104,7 +104,7 @@ def calibration_of_parameter() -> Calibration:
 
 
 def run(name: str, make: Callable[[Calibration], Callable[[Seen], tuple[float, float]]]) -> None:
-    """Start a node that drives by what `make` makes of the calibration, until Ctrl-C."""
+    """Run a node, until Ctrl-C, that drives with what `make` returns for the calibration."""
     rospy.init_node(name)
     calibration = calibration_of_parameter()
     node = Node(calibration, make(calibration))

@@ -1,1 +1,1 @@
-"""What the lessons of nav_demo need besides scripts and launch files."""
+"""Modules of the nav_demo lessons."""

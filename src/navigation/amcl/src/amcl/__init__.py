@@ -1,1 +1,1 @@
-"""The node amcl: nav_algorithms' Monte Carlo localisation behind upstream's names."""
+"""The node amcl: nav_algorithms' Monte Carlo localisation with upstream's interface."""

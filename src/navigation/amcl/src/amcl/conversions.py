@@ -1,4 +1,4 @@
-"""Between messages and what the localisation takes and gives; no topics, no clock."""
+"""Converts between messages and the localisation's inputs and outputs; no topics, no clock."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ X, Y, YAW = 0, 1, 5  # of the six coordinates of a pose's covariance
 
 
 def scan_of(message: LaserScan, mount: Mount, min_range: float, max_range: float) -> Scan:
-    """As upstream: too near is taken for nothing seen; bounds of 0 and below are the message's.
+    """As upstream: ranges below the minimum count as no return; bounds <= 0 mean the message's.
 
     Raises ValueError for a scan without beams or bounds.
     """
@@ -36,7 +36,7 @@ def scan_of(message: LaserScan, mount: Mount, min_range: float, max_range: float
 
 
 def known_pose(message: PoseWithCovarianceStamped) -> tuple[np.ndarray, np.ndarray]:
-    """(pose (3,), covariance (3, 3)); x, y and yaw apart, as upstream. Raises ValueError."""
+    """(pose (3,), covariance (3, 3)), yaw uncorrelated, as upstream. Raises ValueError."""
     pose = pose_of(message.pose.pose)
     six = np.array(message.pose.covariance).reshape(6, 6)
     covariance = np.zeros((3, 3))
@@ -49,7 +49,7 @@ def known_pose(message: PoseWithCovarianceStamped) -> tuple[np.ndarray, np.ndarr
 
 
 def pose_with_covariance(estimate: Estimate) -> PoseWithCovarianceStamped:
-    """Without a header."""
+    """The estimate as a message without a header."""
     message = PoseWithCovarianceStamped()
     message.pose.pose = pose_message(estimate.pose)
     six = np.zeros((6, 6))
@@ -60,17 +60,17 @@ def pose_with_covariance(estimate: Estimate) -> PoseWithCovarianceStamped:
 
 
 class ParticleCloud(PoseArray):
-    """A PoseArray of particles (N, 3) that is packed as one block: 2000 poses in 0.1 ms."""
+    """A PoseArray of particles (N, 3) that is serialised as one block: 2000 poses in 0.1 ms."""
 
     __slots__ = ("particles",)
 
     def __init__(self, particles: np.ndarray) -> None:
-        """Poses are made of them only when it is sent."""
+        """Poses are computed only when it is sent."""
         super().__init__()
         self.particles = particles
 
     def serialize(self, buff: BytesIO) -> None:
-        """Header, number of poses, and seven numbers a pose."""
+        """Write header, number of poses, and seven numbers per pose."""
         self.header.serialize(buff)
         sevens = np.zeros((len(self.particles), 7), "<f8")
         sevens[:, :2] = self.particles[:, :2]

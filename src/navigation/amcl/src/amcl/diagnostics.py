@@ -1,4 +1,4 @@
-"""Whether the pose is sure enough, for /diagnostics."""
+"""Whether the pose is certain enough, for /diagnostics."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 
 def deviations(covariance: np.ndarray, values: dict[str, Any]) -> DiagnosticArray:
-    """Standard deviations of a covariance (3, 3) beside the levels from which on they warn."""
+    """Standard deviations of a covariance (3, 3), with their warning levels."""
     found = np.sqrt(np.diag(covariance))
     axes = "x", "y", "yaw"
     levels = [values[f"std_warn_level_{axis}"] for axis in axes]

@@ -1,7 +1,7 @@
-"""The pose a robot starts at, kept on the parameter server, where the next start reads it.
+"""The initial pose, saved on the parameter server for the node's next start.
 
-Upstream keeps no odometry with it: a node that is killed and started again while the robot drives
-is wrong by what was driven since the last time, and sure of it.
+Upstream saves no odometry with it: a node that is killed and restarted while the robot drives is
+wrong by the distance driven since the pose was saved, with a small covariance.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ import rospy
 from nav_algorithms import poses
 
 SAVED = "~saved_pose"  # beside upstream's: {pose: [x, y, yaw], odometry: [x, y, yaw], stamp: s}
-LATELY = 60.0          # s of ROS time; after longer the odometry may have begun anew
+LATELY = 60.0          # s of ROS time; later the odometry may have been reset
 UNANSWERED = (OSError, xmlrpc.client.Error, HTTPException, rospy.ROSException)
-DRIFT = 0.2            # of the way, and of the turn, by the odometry since then
+DRIFT = 0.2            # error as a share of distance and turn by odometry since then
 
 
 def initial_pose(values: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     """(pose (3,), covariance (3, 3)) of ~initial_pose_* and ~initial_cov_* as they are now.
 
-    What is no number there is passed over, and the value from the start taken, as upstream.
+    Values that are not numbers are ignored in favour of those read at start, as upstream.
     """
     def number(name: str) -> float:
         value = rospy.get_param("~" + name, values[name])
@@ -39,7 +39,7 @@ def initial_pose(values: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def save_pose(pose: np.ndarray, covariance: np.ndarray, odometry: np.ndarray) -> None:
-    """To where initial_pose reads it; a master that does not answer, or amiss, is passed over.
+    """Save it for initial_pose and saved_pose; errors of the master are ignored.
 
     `odometry` (3,) is the robot's pose in the odometry's frame at that time.
     """
@@ -55,7 +55,7 @@ def save_pose(pose: np.ndarray, covariance: np.ndarray, odometry: np.ndarray) ->
 
 
 def saved_pose(values: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-    """(pose, covariance, odometry) as they were saved lately; None if the pose was set since."""
+    """(pose, covariance, odometry) as recently saved; None if the initial pose was set since."""
     pose, covariance = initial_pose(values)
     try:
         saved = rospy.get_param(SAVED, {})

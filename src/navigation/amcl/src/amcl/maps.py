@@ -1,4 +1,4 @@
-"""Where the map comes from: a topic, a service, or whoever calls set_map."""
+"""The source of the map: a topic, a service, or a call of set_map."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ADVICE = "start map_server with the map's YAML file"
 
 
 def grid_in(message: OccupancyGridMessage, frame: str) -> OccupancyGrid:
-    """Its grid, with a line if it is in another frame than ours. Raises ValueError."""
+    """Its grid; logs a line if its frame is not ours. Raises ValueError."""
     grid = grid_of(message)
     if message.header.frame_id.lstrip("/") != frame.lstrip("/"):
         rospy.logwarn("the map's frame is %r, but ~global_frame_id is %r: what is published "
@@ -29,9 +29,9 @@ def grid_in(message: OccupancyGridMessage, frame: str) -> OccupancyGrid:
 
 
 class MapSource:
-    """Gives `take` each map that comes; follows its topic or calls the service until one came.
+    """Passes each map to `take`; follows the topic, or calls the service until a map came.
 
-    A map that `take` refuses, by a ValueError, has not come.
+    A map that `take` rejects by a ValueError does not count.
     """
 
     def __init__(self, take: Callable[[OccupancyGridMessage], None],
@@ -40,12 +40,12 @@ class MapSource:
         self._complaints = complaints
         self._topic: rospy.Subscriber | None = None
         self._first_only = False
-        self._lock = threading.Lock()  # of two maps at a time the second must know of the first
+        self._lock = threading.Lock()  # of two simultaneous maps the second must see the first
         self._came = False
         self._advice = ADVICE
 
     def follow(self, topic: bool, first_only: bool) -> None:
-        """From now on the topic, or else the service; with `first_only` one map of the topic."""
+        """Use the topic from now on, else the service; `first_only`: only the topic's first map."""
         self._first_only = first_only
         if topic and self._topic is None:
             self._topic = rospy.Subscriber("map", OccupancyGridMessage, self._from_topic,
@@ -57,7 +57,7 @@ class MapSource:
             self._topic = None
 
     def set(self, message: OccupancyGridMessage, only_first: bool = False) -> bool:
-        """A map from elsewhere; false if it is of no use. `only_first`: passed over if one came."""
+        """Take a map; False if it is unusable. `only_first`: ignored if there is one already."""
         with self._lock:
             if only_first and self._came:
                 return True
@@ -71,18 +71,18 @@ class MapSource:
 
     def _refuse(self, error: ValueError) -> None:
         self._advice = f"the one that came is of no use: {error}"
-        if self._came:  # else complain says it
+        if self._came:  # else `complain` reports it
             rospy.logerr_throttle(5.0, "a map came that is of no use, passed over: %s", error)
 
     @property
     def missing(self) -> str:
-        """What is waited for."""
+        """The topic or service that is waited for, in words."""
         if self._topic is not None:
             return f"map on {self._topic.resolved_name}"
         return f"map by the service {rospy.resolve_name('static_map')}"
 
     def complain(self) -> None:
-        """Call now and then: says how long there has been no map."""
+        """Call periodically: logs how long there has been no map."""
         if not self._came:
             self._complaints.missing(self.missing, self._advice)
         else:

@@ -33,13 +33,13 @@ from nav_nodes.program import init_node, spin
 from nav_nodes.silence import Silence
 
 TABLE = Path("params/amcl.yaml")  # below the package's folder
-SCAN_PATIENCE = 0.5               # s of wall time that a scan waits for its odometry
-DISORDER = 1.0                    # s by which scans of two lasers may come in the wrong order
-WATCH = 0.25                      # s of wall time between two looks at what is missing
+SCAN_PATIENCE = 0.5               # s of wall time to wait for a scan's odometry
+DISORDER = 1.0                    # s by which scans of two lasers may be out of order
+WATCH = 0.25                      # s of wall time between two checks for missing inputs
 
 
 class AmclNode:
-    """Scans, a map and transforms come in; the pose and the transform map to odom go out.
+    """Takes scans, a map and transforms; publishes the pose and the transform from map to odom.
 
     All state changes under one lock, because scans, services and maps come on threads of their own.
     """
@@ -54,13 +54,13 @@ class AmclNode:
         self._frames = RobotFrames(self._values, self._complaints)
         self._grid: OccupancyGrid | None = None
         self._localisation: Localisation | None = None
-        self._told: tuple[np.ndarray, np.ndarray] | None = None  # by initialpose, before the map
+        self._told: tuple[np.ndarray, np.ndarray] | None = None  # by initialpose, before a map
         self._saved: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None  # with its odometry
         self._odometry: np.ndarray | None = None
         self._newest = rospy.Time(0)
         self._silence = Silence(self._complaints, "laser scans", "scan")
         self._is_tracking = False  # the transform map to odom is known
-        self._has_jumped = False   # with the next scan's odometry, when the clock went back
+        self._has_jumped = False   # the clock went back: follow the next scan's odometry
         self._outputs = Outputs()
         self._maps = MapSource(self._take_map, self._complaints)
         rospy.Service("global_localization", Empty, self._start_anywhere)
@@ -74,7 +74,7 @@ class AmclNode:
     # The map, and where the robot starts on it
 
     def _take_map(self, message: OccupancyGridMessage) -> None:
-        """Raises ValueError, and changes nothing, if it is none."""
+        """Raises ValueError, and changes nothing, if the map is invalid."""
         grid = grid_in(message, self._values["global_frame_id"])
         with self._lock:
             self._grid = grid
@@ -84,7 +84,7 @@ class AmclNode:
                 self._saved = saved_pose(self._values)
 
     def _begin(self, pose: np.ndarray, covariance: np.ndarray) -> None:
-        """New particles on the map with the present settings."""
+        """New particles on the map with the current settings."""
         self._localisation = Localisation(self._grid, localisation_settings(self._values),
                                           sensor_settings(self._values), self._random)
         self._localisation.start_at(pose, covariance)
@@ -101,7 +101,7 @@ class AmclNode:
         return SetMapResponse(True)
 
     def _take_pose(self, message: PoseWithCovarianceStamped) -> None:
-        """A pose of the past is moved by what the odometry says was driven since."""
+        """Takes an initial pose; one with an older stamp is moved by the odometry since then."""
         frame, ours = message.header.frame_id.lstrip("/"), self._values["global_frame_id"]
         if not frame:
             rospy.logwarn("initialpose without a frame_id: taken to be in %s", ours)
@@ -140,7 +140,7 @@ class AmclNode:
         return EmptyResponse()
 
     def _change(self, values: dict[str, Any]) -> dict[str, Any]:
-        """dynamic_reconfigure: as upstream, the particles begin anew round the present pose."""
+        """dynamic_reconfigure: as upstream, particles are drawn anew around the current pose."""
         values = with_order(values)
         with self._lock:
             before, self._values = self._values, values
@@ -187,7 +187,7 @@ class AmclNode:
             self._publish(self._localisation.add(odometry, scan, message.header.frame_id), stamp)
 
     def _look_at_clock(self, stamp: rospy.Time) -> None:
-        """A simulation that was reset put the robot back where it and its odometry began."""
+        """If the clock went back (reset simulation), take the robot to be where its odometry is."""
         behind = (self._newest - stamp).to_sec()
         if not 0.0 < behind <= DISORDER:
             self._newest = stamp
@@ -209,10 +209,10 @@ class AmclNode:
         if self._is_tracking and values["tf_broadcast"]:
             self._outputs.transform(found.map_to_odom, values, stamp)
 
-    # What does not wait for a scan
+    # Independent of scans
 
     def _watch(self) -> None:
-        """Says what is missing, saves the pose, and tells /diagnostics how sure it is."""
+        """Logs what is missing, saves the pose, and publishes its certainty to /diagnostics."""
         saved = told = time.monotonic()
         while not rospy.is_shutdown():
             time.sleep(WATCH)
@@ -233,7 +233,7 @@ class AmclNode:
 
 
 def main() -> None:
-    """Runs the node until it is told to end."""
+    """Runs the node until shutdown."""
     init_node("amcl")
     table = load_table(Path(rospkg.RosPack().get_path("amcl")) / TABLE)
     try:

@@ -1,4 +1,4 @@
-"""What amcl publishes: pose, particles, the transform to the odometry, and how sure it is."""
+"""What amcl publishes: pose, particles, the transform to odometry, and diagnostics."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ class Outputs:
         self._newest_cloud = rospy.Time(0)
 
     def pose(self, estimate: Estimate, values: dict[str, Any], stamp: rospy.Time) -> None:
-        """A new estimate."""
+        """Publish a new estimate."""
         message = pose_with_covariance(estimate)
         message.header.frame_id, message.header.stamp = _frame(values, "global"), stamp
         self._pose.publish(message)
 
     def transform(self, map_to_odom: np.ndarray, values: dict[str, Any], stamp: rospy.Time) -> None:
-        """Dated ahead by transform_tolerance; not twice at a stamp, as two lasers may have it.
+        """Future-dated by transform_tolerance; not twice with one stamp, as two lasers may cause.
 
-        Every listener would warn, and take the first.
+        Every listener would warn of a repeated stamp and keep the first.
         """
         if stamp == self._latest:
             return
@@ -51,7 +51,7 @@ class Outputs:
             map_to_odom, _frame(values, "global"), _frame(values, "odom"), stamp + ahead))
 
     def cloud(self, particles: np.ndarray, values: dict[str, Any]) -> None:
-        """No more often than gui_publish_rate, and only to somebody."""
+        """Publish at most at gui_publish_rate, and only if there are subscribers."""
         now, rate = rospy.Time.now(), values["gui_publish_rate"]
         if not self._cloud.get_num_connections() or (
                 rate > 0 and (now - self._newest_cloud).to_sec() < 1.0 / rate):
@@ -62,7 +62,7 @@ class Outputs:
         self._cloud.publish(cloud)
 
     def diagnostics(self, covariance: np.ndarray, values: dict[str, Any]) -> None:
-        """Whether the pose is sure enough."""
+        """Publish whether the pose is certain enough."""
         self._diagnostics.publish(deviations(covariance, values))
 
 

@@ -1,4 +1,4 @@
-"""Where the robot's odometry and its lasers are, by their frames' names."""
+"""Poses of the robot's odometry and lasers, by their frames' names."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from nav_nodes.complaints import Complaints
 from nav_nodes.mount import Mount, Mounts
 from nav_nodes.transforms import NEWEST, Transforms
 
-PATIENCE = 0.5   # s of wall time that a pose set by hand waits for the odometry of its moment
+PATIENCE = 0.5   # s of wall time to wait for the odometry at the time of a manually set pose
 
 
 class RobotFrames:
-    """Of one robot."""
+    """The frames of one robot."""
 
     def __init__(self, values: dict[str, Any], complaints: Complaints) -> None:
         """`values` by the names of the parameter table; rospy is initialised."""
@@ -25,7 +25,7 @@ class RobotFrames:
         self.rename(values)
 
     def rename(self, values: dict[str, Any]) -> None:
-        """Takes the frames' names from other values."""
+        """Takes the frames' names from new values."""
         self._odom, self._base = (values[name].lstrip("/")
                                   for name in ("odom_frame_id", "base_frame_id"))
         self._transforms.chain = self._odom, self._base
@@ -36,16 +36,16 @@ class RobotFrames:
         self._transforms.buffer.clear()
 
     def odometry(self, stamp: rospy.Time, patience: float) -> np.ndarray | None:
-        """The robot's pose in the odometry's frame then, waited for so many s of wall time."""
+        """The robot's pose in the odometry frame at `stamp`; waits `patience` s of wall time."""
         return self._transforms.pose(self._odom, self._base, stamp, patience)
 
     def moved_since(self, stamp: rospy.Time) -> np.ndarray:
-        """The robot's pose now in its own frame of then; at rest if the odometry cannot tell."""
+        """The robot's current pose in its frame at `stamp`; zeros if odometry is unknown."""
         if not self._transforms.buffer.can_transform(self._odom, self._base, NEWEST):
             return np.zeros(3)  # as upstream: before the first odometry that is no fault
         then, now = self.odometry(stamp, PATIENCE), self.odometry(NEWEST, 0.0)
         return np.zeros(3) if then is None or now is None else poses.relative(then, now)
 
     def mount(self, laser: str) -> Mount | None:
-        """Of a laser by its frame's name."""
+        """The mount of a laser, by its frame's name."""
         return self._mounts.of(laser)

@@ -12,7 +12,7 @@ from nav_algorithms.sensor_models import SensorSettings
 
 
 def with_order(values: dict[str, Any]) -> dict[str, Any]:
-    """The same with as many particles at most as at least, as upstream mends it."""
+    """The values with max_particles raised to min_particles if it is less, as upstream."""
     if values["min_particles"] <= values["max_particles"]:
         return values
     rospy.logwarn("~min_particles is %d and ~max_particles only %d: taken to be equal, %d",

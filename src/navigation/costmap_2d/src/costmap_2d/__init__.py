@@ -1,4 +1,4 @@
-"""Costmaps behind upstream's names: layers, sensors, topics and parameters of costmap_2d."""
+"""Costmaps with upstream's interface: layers, sensors, topics and parameters of costmap_2d."""
 
 from costmap_2d.costmap_ros import CostmapROS
 

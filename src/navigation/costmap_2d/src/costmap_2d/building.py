@@ -1,4 +1,4 @@
-"""Layers from their settings, and what dynamic_reconfigure changes in them."""
+"""Builds layers from their settings, and applies changes by dynamic_reconfigure."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def build_layer(settings: LayerSettings, rolling: bool) -> Layer:
 
 
 def change_layer(layer: Layer, values: dict[str, Any]) -> None:
-    """Applies what may change while it runs; everything must be written again after that."""
+    """Applies the parameters that may change at run time; all cells must be written again then."""
     layer.enabled = values["enabled"]
     if isinstance(layer, InflationLayer):
         layer.change(values["inflation_radius"], values["cost_scaling_factor"],

@@ -1,4 +1,4 @@
-"""From sensor messages to points in the sensor's frame, m."""
+"""Converts sensor messages to points in the sensor's frame, m."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ import numpy as np
 from geometry_msgs.msg import Transform
 from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2, PointField
 
-NEARLY = 1e-4   # m; how much less than range_max an infinite range becomes, as upstream
-LONGEST = 60.0  # s of a sweep; tf remembers less
+NEARLY = 1e-4   # m by which an infinite range is put below range_max, as upstream
+LONGEST = 60.0  # s, longest sweep; tf's buffer holds less
 
 NUMBERS = {PointField.FLOAT32: "f4", PointField.FLOAT64: "f8"}
 
 
 def timed_points(message: LaserScan | PointCloud | PointCloud2, data_type: str,
                  inf_is_valid: bool) -> tuple[np.ndarray, np.ndarray]:
-    """(points (N, 3), (N,) s after the message's stamp); ValueError for what makes no sense."""
+    """(points (N, 3), times (N,), s after the stamp); ValueError for an invalid message."""
     if data_type == "LaserScan":
         return points_of_scan(message, inf_is_valid)
     points = points_of_cloud(message) if data_type == "PointCloud" else points_of_cloud2(message)
@@ -22,9 +22,9 @@ def timed_points(message: LaserScan | PointCloud | PointCloud2, data_type: str,
 
 
 def placed(points: np.ndarray, start: tuple, end: tuple, when: np.ndarray) -> np.ndarray:
-    """Points (N, 3) of a sensor that went from `start` to `end` evenly while it measured.
+    """Points (N, 3) of a sensor that moved uniformly from `start` to `end` while measuring.
 
-    Both as of `rotation_and_translation`; `when` (N,), s after the start.
+    Both as returned by `rotation_and_translation`; `when` (N,), s after the start.
     """
     first = points @ start[0].T + start[1]
     if not when.any():
@@ -33,10 +33,10 @@ def placed(points: np.ndarray, start: tuple, end: tuple, when: np.ndarray) -> np
 
 
 def points_of_scan(message: LaserScan, inf_is_valid: bool) -> tuple[np.ndarray, np.ndarray]:
-    """(points (N, 3), when in the sweep (N,), s after the message's stamp).
+    """(points (N, 3), their times (N,), s after the message's stamp).
 
-    Ranges count from range_min to below range_max. With `inf_is_valid` +inf is a ray that ended
-    at range_max; else it is nothing. Raises ValueError where angles or times are none.
+    Ranges count from range_min to below range_max. With `inf_is_valid`, +inf is a ray that ended
+    at range_max; else it is ignored. Raises ValueError for invalid angles or times.
     """
     if not np.isfinite((message.angle_min, message.angle_increment)).all():
         raise ValueError(f"a scan from {message.angle_min} rad in steps of "

@@ -28,22 +28,21 @@ from nav_nodes.transforms import Transforms
 
 OUTLINE = ("footprint", "robot_radius", "footprint_padding")
 ANY_OBSTACLES = "obstacles"  # the default of clear_costmap_recovery's layer_names
-IDLE = 0.1                   # s of wall time between two looks while there is nothing to do
-OVERDUE = 1.0                # s after the last update, at least, until it is no longer current
+IDLE = 0.1                   # s of wall time between two checks while there is nothing to do
+OVERDUE = 1.0                # s, least age of the last update at which it is no longer current
 
 
 class CostmapROS:
     """A costmap with its parameters, sensors and topics below `~NAME/`, kept by its own thread.
 
-    Nothing here waits for a map, a sensor or a transform: what is missing is complained about,
-    and `is_ready` says when the first whole update was made. All methods may be called on any
-    thread.
+    Nothing here waits for a map, a sensor or a transform: missing ones are logged, and `is_ready`
+    tells whether the first complete update was made. All methods may be called on any thread.
     """
 
     def __init__(self, name: str, transforms: Transforms, complaints: Complaints) -> None:
         """Reads `~NAME/...` (all that is in `tables`), subscribes, and starts updating.
 
-        Raises nav_nodes.parameters.ParameterError for a parameter that makes no sense.
+        Raises nav_nodes.parameters.ParameterError for an invalid parameter.
         """
         self.name = name
         self._where = rospy.resolve_name(f"~{name}")
@@ -89,7 +88,7 @@ class CostmapROS:
         return self._bare.copy()
 
     def snapshot(self) -> Costmap:
-        """A copy of the newest whole update: the caller's own, to read or to write into."""
+        """A copy of the newest complete update, which the caller may modify."""
         with self._lock:
             newest = self._layered.newest
             return Costmap(newest.cells.copy(), newest.resolution, newest.origin)
@@ -100,15 +99,15 @@ class CostmapROS:
                                            self.transform_tolerance)
 
     def is_ready(self) -> bool:
-        """The map (if one is asked for) and the robot's pose have come, and an update was made."""
+        """Whether the map (if required) and the robot's pose have come, and an update was made."""
         return self._ready.is_set()
 
     def wait_until_ready(self, timeout_s: float) -> bool:
-        """Waits in wall time; whether it is ready."""
+        """Waits in wall time; returns whether it is ready."""
         return self._ready.wait(timeout_s)
 
     def is_current(self) -> bool:
-        """Ready, no update is overdue by far, and no sensor is (by its `expected_update_rate`)."""
+        """Whether it is ready, and no update or sensor (by `expected_update_rate`) is overdue."""
         frequency = self._values["update_frequency"]
         age = (rospy.Time.now() - self._updated_at).to_sec()
         if not self.is_ready() or (frequency and not self._paused
@@ -117,26 +116,26 @@ class CostmapROS:
         return self._sensors.are_current()
 
     def news(self) -> list[News]:
-        """When each sensor was heard from, and when it last sent what can be used."""
+        """When each sensor last sent a message, and when a usable one."""
         return self._sensors.news()
 
     def orphaned_maps(self) -> list[str]:
-        """Topics of maps that nobody publishes; what they said last still counts."""
+        """Topics of maps that have lost their publisher; the last map is still used."""
         return [topic for each in self._maps if (topic := each.orphaned) is not None]
 
     def start(self) -> None:
-        """Goes on listening to sensors and updating after `stop`; waits for nothing."""
+        """Resumes sensors and updates after `stop`; does not wait."""
         self._stopped = False
         self._sensors.start()
 
     def stop(self) -> None:
-        """Lets go of the sensors and updates no more (shutdown_costmaps)."""
+        """Unsubscribes from the sensors and stops updating (shutdown_costmaps)."""
         self._stopped = True
         self._ready.clear()
         self._sensors.stop()
 
     def pause(self) -> None:
-        """Updates no more, but still listens."""
+        """Stops updating, but keeps receiving."""
         self._paused = True
 
     def resume(self) -> None:
@@ -144,7 +143,7 @@ class CostmapROS:
         self._paused = False
 
     def update(self) -> bool:
-        """One update now, on the caller's thread; False if the map or the pose is missing."""
+        """Updates now, on the caller's thread; False if the map or the pose is missing."""
         missing = [each for each in self._maps if not each.has_map(self._complaints)]
         pose = None if missing else self.robot_pose()
         if pose is None:
@@ -165,7 +164,7 @@ class CostmapROS:
         return [layer.name for layer in self._layered.layers]
 
     def reset_layers(self) -> None:
-        """Every layer forgets what sensors said, and takes its map anew (~clear_costmaps)."""
+        """Every layer forgets sensor data and reloads its map (~clear_costmaps)."""
         with self._lock:
             self._layered.reset()
 
@@ -174,7 +173,7 @@ class CostmapROS:
         """Layers forget what lies outside a square of side `distance`, m, around the robot.
 
         With `invert`: inside it. `layer_names`: of clear_costmap_recovery; "obstacles", or None,
-        means each layer that sensors fill. False without a pose. Seen after the next update.
+        means each layer filled by sensors. False without a pose. Takes effect with the next update.
         """
         pose = self.robot_pose()
         if pose is None:
@@ -191,11 +190,11 @@ class CostmapROS:
             try:
                 self._update_and_rest()
             except rospy.ROSTimeMovedBackwardsException:
-                self.transforms.buffer.clear()  # else it goes by the newest of the time before
+                self.transforms.buffer.clear()  # else it would use the newest from before
                 self._sensors.forget()
             except rospy.ROSInterruptException:
                 return
-            except Exception:  # without this thread the robot would stand for ever
+            except Exception:  # if this thread ended, the robot would never drive again
                 rospy.logerr_throttle(5.0, f"{self.name}: an update failed: "
                                            + traceback.format_exc())
                 time.sleep(IDLE)
@@ -209,7 +208,7 @@ class CostmapROS:
         if self.update():
             self._publish_if_due()
         took, period = (rospy.Time.now() - began).to_sec(), 1 / frequency
-        if took < 0:  # else it would sleep until the clock is where it was
+        if took < 0:  # else it would sleep until the old time is reached
             raise rospy.ROSTimeMovedBackwardsException(took)
         if took > period:
             rospy.logwarn_throttle(5.0, "%s: an update took %.2f s, but update_frequency is %g Hz",

@@ -1,4 +1,4 @@
-"""The map of a static layer: from its topic to the layer."""
+"""Receives a static layer's map from its topic."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from nav_nodes.transforms import Transforms
 
 
 class MapInput:
-    """Listens for maps; unless the window rolls, the costmap takes the map's size.
+    """Subscribes to a map; unless the costmap is rolling, it takes the map's size.
 
-    `lock` is the costmap's: maps come on ROS's thread.
+    `lock` is the costmap's, as maps come on ROS's thread.
     """
 
     def __init__(self, values: dict[str, Any], layer: StaticLayer, layered: LayeredCostmap,
                  lock: threading.RLock) -> None:
-        """`values` by params/static_layer.yaml."""
+        """`values`: parameters of params/static_layer.yaml."""
         self._values, self._layer, self._layered, self._lock = values, layer, layered, lock
         self._frame = ""
         self._topic = rospy.resolve_name(values["map_topic"])
@@ -38,7 +38,7 @@ class MapInput:
                              self._take_update, queue_size=10)
 
     def has_map(self, complaints: Complaints) -> bool:
-        """Whether a map has come; complains if not."""
+        """Whether a map has come; logs a line if not."""
         what = f"map on {self._topic}"
         if not self._layer.has_map:
             complaints.missing(what, "start map_server or slam_gmapping, or set map_topic")
@@ -48,12 +48,12 @@ class MapInput:
 
     @property
     def orphaned(self) -> str | None:
-        """The map's topic if it is still listened to and nobody publishes there."""
+        """The map's topic if it is still subscribed to but has no publisher."""
         listens = self._subscriber.impl is not None
         return self._topic if listens and not is_published(self._subscriber) else None
 
     def place(self, transforms: Transforms, costmap_frame: str) -> None:
-        """Tells the layer of a rolling costmap where that lies in the map."""
+        """Sets, in the layer of a rolling costmap, that costmap's pose in the map."""
         if self._layered.rolling and self._frame:
             self._layer.frame_in_map = (np.zeros(3) if self._frame == costmap_frame
                                         else transforms.pose(self._frame, costmap_frame))

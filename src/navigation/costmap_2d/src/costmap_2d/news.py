@@ -1,4 +1,4 @@
-"""How long ago a sensor was heard from, and when what it said was last of use."""
+"""The ages of a sensor's last message and last usable message."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class News:
-    """Ages are s of ROS time; below 0: of before the clock was set back.
+    """Ages are s of ROS time; negative: from before the clock was set back.
 
-    `what`: "LaserScan on /scan"; `placed`: since the newest message came that tf can place in the
-    costmap's frame, whether an update has taken it yet or not. `usable`: "LaserScan on /scan that
-    can be placed"; `why` it is not; empty where it is, and where tf's own line says it.
+    `what`: "LaserScan on /scan"; `placed`: age of the newest message that tf can transform to the
+    costmap's frame, whether or not an update has used it. `usable`: "LaserScan on /scan that can be
+    placed"; `why` it is not; empty if it is, or if the line about tf says so.
     """
 
     what: str

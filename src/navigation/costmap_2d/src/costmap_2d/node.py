@@ -15,7 +15,7 @@ from nav_nodes.transforms import Transforms
 
 
 def main() -> int:
-    """Keeps `~costmap` until it is told to end; the exit status."""
+    """Runs `~costmap` until shutdown; returns the exit status."""
     init_node("costmap_node")
     complaints = Complaints()
     clock.watch(complaints)

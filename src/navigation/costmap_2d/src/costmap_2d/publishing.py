@@ -1,4 +1,4 @@
-"""A costmap's topics for rviz: whole grids, what changed since, and the robot's outline."""
+"""A costmap's topics for rviz: complete grids, updates, and the robot's footprint."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Grid, Update = numpy_msg(OccupancyGridMessage), numpy_msg(OccupancyGridUpdate)
 
 
 def _occupancies() -> np.ndarray:
-    """What each cost is published as: 0, 1 to 98, 99 inscribed, 100 lethal, -1 unknown."""
+    """Published value of each cost: 0, 1 to 98, 99 inscribed, 100 lethal, -1 unknown."""
     costs = np.arange(256)
     table = np.where(costs > 0, 1 + 97 * (costs - 1) // 251, 0)
     table[[INSCRIBED, LETHAL, UNKNOWN]] = 99, 100, -1
@@ -31,16 +31,16 @@ OCCUPANCIES = _occupancies()
 
 
 class CostmapPublisher:
-    """Publishes below `~NAME/`, and only to somebody. Called on the costmap's thread.
+    """Publishes below `~NAME/`, if there are subscribers. Called on the costmap's thread.
 
-    The grid is latched, but what is latched may be old: who comes new gets the newest first.
+    The latched grid may be outdated, so a new subscriber is sent the newest one first.
     """
 
     def __init__(self, name: str, frame: str, always_whole: bool,
                  newest: Callable[[], Costmap | None]) -> None:
-        """`always_whole`: no updates (always_send_full_costmap); `newest`: a copy, if there is."""
+        """`always_whole`: always_send_full_costmap; `newest` gives a copy of the costmap."""
         self._frame, self._always_whole, self._newest = frame, always_whole, newest
-        self._sent: Costmap | None = None     # geometry of the newest whole grid
+        self._sent: Costmap | None = None     # the newest complete grid, for its geometry
         self._changed: Window | None = None   # since the newest message
         self._somebody_new = False
         self._grid = rospy.Publisher(f"~{name}/costmap", Grid, self, queue_size=1, latch=True)
@@ -48,7 +48,7 @@ class CostmapPublisher:
         self._outline = rospy.Publisher(f"~{name}/footprint", PolygonStamped, queue_size=1)
 
     def peer_subscribe(self, _topic: str, _publish: Callable, publish_one: Callable) -> None:
-        """rospy's listener: somebody new needs a whole grid (on ROS's thread)."""
+        """rospy's listener: sends a new subscriber a complete grid (on ROS's thread)."""
         costmap = self._newest()
         if costmap is None:
             self._somebody_new = True
@@ -59,7 +59,7 @@ class CostmapPublisher:
         """rospy's listener."""
 
     def note(self, window: Window | None) -> None:
-        """These cells were written."""
+        """Take note that these cells were written."""
         if window is None or self._changed is None:
             self._changed = window or self._changed
             return
@@ -67,11 +67,11 @@ class CostmapPublisher:
                               for old, new in zip(self._changed, window, strict=True))
 
     def is_wanted(self) -> bool:
-        """Somebody came before the first update, and waits for it."""
+        """Whether a subscriber from before the first update waits for a grid."""
         return self._somebody_new
 
     def publish(self, costmap: Costmap) -> None:
-        """Sends the whole grid if it moved or is needed, else what was noted since."""
+        """Publish the complete grid if it moved or is needed, else the noted cells."""
         if not self._grid.get_num_connections() and not self._update.get_num_connections():
             self._sent = None
             return
@@ -88,7 +88,7 @@ class CostmapPublisher:
             self._update.publish(message)
 
     def publish_footprint(self, corners: np.ndarray) -> None:
-        """The outline (K, 2), m, in the costmap's frame."""
+        """Publish the footprint (K, 2), m, in the costmap's frame."""
         if not self._outline.get_num_connections():
             return
         message = PolygonStamped(polygon=Polygon([Point32(x, y, 0.0) for x, y in corners.tolist()]))

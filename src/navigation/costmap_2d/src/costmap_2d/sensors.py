@@ -1,4 +1,4 @@
-"""All sensors of a costmap, and which layer each of them fills."""
+"""All sensors of a costmap, by the layer that they fill."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ class Sensors:
         self._all = [source for sources in self._of_layers.values() for source in sources]
 
     def start(self) -> None:
-        """They listen."""
+        """Subscribe all."""
         for source in self._all:
             source.start()
 
     def stop(self) -> None:
-        """They listen no more."""
+        """Unsubscribe all."""
         for source in self._all:
             source.stop()
 
     def forget(self) -> None:
-        """Time went backwards."""
+        """Drop all data, after time went backwards."""
         for source in self._all:
             source.forget()
 
     def are_current(self) -> bool:
-        """Whether each was heard from within its `expected_update_rate`."""
+        """Whether each had an observation within its `expected_update_rate`."""
         return all(source.is_current() for source in self._all)
 
     def news(self) -> list[News]:
-        """Of each; of those that share a topic, of the one that has been useless for longest."""
+        """Of each; of those that share a topic, of the one longest without usable data."""
         found: dict[str, News] = {}
         for news in (source.news() for source in self._all):
             known = found.get(news.what)
@@ -52,7 +52,7 @@ class Sensors:
         return list(found.values())
 
     def observe(self, layers: Sequence[Layer]) -> None:
-        """Gives each layer what its sources see: for marking, for clearing."""
+        """Passes each layer its sources' observations, for marking and for clearing."""
         for layer in layers:
             if isinstance(layer, ObstacleLayer):
                 seen = [(each.settings, each.collect()) for each in self._of_layers[layer.name]]

@@ -1,4 +1,4 @@
-"""What the parameters below a costmap's name mean: layers and sources, in both of the styles."""
+"""Reads the parameters below a costmap's name: layers and sources, in both styles."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ STATIC, OBSTACLE, VOXEL, INFLATION = "StaticLayer", "ObstacleLayer", "VoxelLayer
 TABLES = {STATIC: ("static_layer",), OBSTACLE: ("obstacle_layer",),
           VOXEL: ("obstacle_layer", "voxel_layer"), INFLATION: ("inflation_layer",)}
 LARGEST = 5e8  # cells
-# A layer takes these from the costmap's own namespace if they are there, as upstream's does.
+# A layer takes these from the costmap's own namespace if set there, as in upstream.
 OF_THE_COSTMAP = {
     STATIC: ("map_topic", "unknown_cost_value", "lethal_cost_threshold", "track_unknown_space"),
     OBSTACLE: ("max_obstacle_height", "raytrace_range", "obstacle_range", "track_unknown_space"),
@@ -35,7 +35,7 @@ SEARCHED_UPWARDS = ("footprint", "robot_radius", "footprint_padding", "obstacle_
 
 @dataclass(frozen=True)
 class LayerSettings:
-    """One layer: `kind` is a key of TABLES, `values` are by its tables; sources by name."""
+    """One layer: `kind` is a key of TABLES, `values` are its parameters; sources by name."""
 
     name: str
     kind: str
@@ -45,9 +45,9 @@ class LayerSettings:
 
 @dataclass(frozen=True)
 class Settings:
-    """A costmap's own parameters by name, its layers, lowest first, and what to warn about.
+    """A costmap's own parameters by name, its layers, lowest first, and warnings.
 
-    `tables` has what is read, by the namespace below the costmap's: "", "LAYER", "LAYER/SOURCE".
+    `tables`: parameters read, by namespace below the costmap's: "", "LAYER", "LAYER/SOURCE".
     """
 
     values: dict[str, Any]
@@ -63,7 +63,7 @@ def table(*names: str) -> list[Parameter]:
 
 
 def read_settings(where: str) -> Settings:
-    """`settings_of` what the parameter server has below the namespace `where`.
+    """`settings_of` the parameter server's content below the namespace `where`.
 
     Parameters that are searched upwards are searched from the node's own namespace.
     """
@@ -76,13 +76,13 @@ def settings_of(tree: Mapping[str, Any], where: str,
                 outer: Mapping[str, Any] | None = None) -> Settings:
     """Settings of the parameters `tree` below the namespace `where` ("/move_base/local_costmap").
 
-    `outer` has what the namespaces around it have of SEARCHED_UPWARDS. Raises ParameterError for
-    a value that makes no sense.
+    `outer`: values of SEARCHED_UPWARDS in enclosing namespaces. Raises ParameterError for an
+    invalid value.
 
     Without `plugins` there are the older style's layers, static_layer, obstacle_layer and
     inflation_layer. Upstream moves their parameters to the layers' namespaces and sets `plugins`,
-    so that a second launch with a changed file goes by the first; here they are read where they
-    are, each time.
+    so that a second launch with a changed file still uses the first values; here they are read
+    from where they are, each time.
     """
     tree = {**{key: value for key, value in (outer or {}).items() if key in SEARCHED_UPWARDS},
             **tree}
@@ -95,13 +95,13 @@ def settings_of(tree: Mapping[str, Any], where: str,
 
 
 def footprint_of(values: Mapping[str, Any], where: str) -> np.ndarray | None:
-    """The polygon (K, 2), m, that `footprint` spells; None where the radius counts.
+    """The polygon (K, 2), m, in `footprint`; None if `robot_radius` applies.
 
     Raises ParameterError for anything but three or more pairs of finite numbers, or none.
     """
     try:
         corners = np.asarray(yaml.safe_load(values["footprint"]) or [], float)
-    except Exception:  # PyYAML lets out KeyError, IndexError and more
+    except Exception:  # PyYAML also raises KeyError, IndexError and more
         corners = np.zeros(1)
     if not corners.size:
         return None
@@ -114,9 +114,9 @@ def footprint_of(values: Mapping[str, Any], where: str) -> np.ndarray | None:
 
 def geometry_of(values: Mapping[str, Any], where: str
                 ) -> tuple[tuple[int, int], float, tuple[float, float]]:
-    """((rows, columns), resolution, origin), m, of a costmap that takes no map's size.
+    """((rows, columns), resolution, origin), m, of a costmap that does not take a map's size.
 
-    Raises ParameterError for more cells than a computer has room for.
+    Raises ParameterError if there would be more than LARGEST cells.
     """
     resolution = values["resolution"]
     cells = [min(values[side] / resolution + 1e-9, LARGEST) for side in ("height", "width")]
@@ -129,7 +129,7 @@ def geometry_of(values: Mapping[str, Any], where: str
 
 
 def _tables(layers: list[LayerSettings], by_plugins: bool) -> dict[str, list[Parameter]]:
-    """Also of what stands directly below the costmap's name, as older files have it."""
+    """The tables by namespace, including the older style's, directly below the costmap's name."""
     tables = {"": list(table("costmap"))}
     for layer in layers:
         entries = tables[layer.name] = table(*TABLES[layer.kind])

@@ -1,4 +1,4 @@
-"""Sensors of a costmap: from their topics to observations in the costmap's frame."""
+"""Sensors of a costmap: convert their messages to observations in the costmap's frame."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ from nav_nodes.silence import why_silent
 from nav_nodes.transforms import Transforms, is_far
 
 TYPES = {"LaserScan": numpy_msg(LaserScan), "PointCloud": PointCloud, "PointCloud2": PointCloud2}
-WAITING = 50   # messages that wait for their transform, as upstream's queue
-SILENCE = 5.0  # s of wall time until a line, where no expected_update_rate says otherwise
+WAITING = 50   # messages that may wait for their transform, as upstream's queue
+SILENCE = 5.0  # s of wall time until silence is logged, unless expected_update_rate is set
 
 
 class _Arrival(NamedTuple):
     message: Any
-    at: rospy.Time  # when it came
+    at: rospy.Time  # time of arrival
 
 
 class Source:
-    """One sensor. Messages come on ROS's thread, `collect` is called by the costmap's.
+    """One sensor. Messages come on ROS's thread, `collect` is called on the costmap's.
 
-    A message waits until tf knows its frame at its stamp. With `observation_persistence` 0 the
-    newest that could be placed counts until the next.
+    A message waits until tf can transform it at its stamp. With `observation_persistence` 0 the
+    newest one that could be transformed counts until the next.
     """
 
     def __init__(self, settings: dict[str, Any], frame: str, transforms: Transforms,
                  complaints: Complaints) -> None:
-        """`settings` by params/source.yaml; `frame` is the costmap's."""
+        """`settings`: parameters of params/source.yaml; `frame` is the costmap's."""
         self.settings = settings
         self._frame, self._transforms, self._complaints = frame, transforms, complaints
         self._sensor_frame = settings["sensor_frame"].lstrip("/")
@@ -46,30 +46,30 @@ class Source:
         self._usable = f"{self._what} that can be placed"
         self._waiting: deque[_Arrival] = deque(maxlen=WAITING)
         self._heard = False
-        self._newest: _Arrival | None = None  # of those that can be placed
-        self._fault = ""  # of the newest messages, while none of them makes sense
+        self._newest: _Arrival | None = None  # of those that tf can transform
+        self._fault = ""  # in the newest messages, while all of them are invalid
         self._complained = False
         self._seen: list[tuple[rospy.Time, Observation]] = []  # newest first
         self._updated = self._heard_at = self._placed_at = rospy.Time.now()
         self._subscriber: rospy.Subscriber | None = None
 
     def start(self) -> None:
-        """Begins to listen."""
+        """Subscribes."""
         self._updated = self._heard_at = self._placed_at = rospy.Time.now()
         if self._subscriber is None:
-            self._forget_messages()  # of before a pause
+            self._forget_messages()  # those from before a pause
             self._subscriber = rospy.Subscriber(
                 self.settings["topic"], TYPES[self.settings["data_type"]], self._take,
                 queue_size=WAITING)
 
     def stop(self) -> None:
-        """Listens no more."""
+        """Unsubscribes."""
         if self._subscriber is not None:
             self._subscriber.unregister()
             self._subscriber = None
 
     def forget(self) -> None:
-        """Time went backwards: what was seen is of another world."""
+        """Time went backwards: drop all observations."""
         self._forget_messages()
         self._seen.clear()
         self._updated = self._heard_at = self._placed_at = rospy.Time.now()
@@ -85,7 +85,7 @@ class Source:
         return not rate or (rospy.Time.now() - self._updated).to_sec() <= rate
 
     def news(self) -> News:
-        """Ages since `start` where nothing came. On any thread, between two updates as well."""
+        """Ages, since `start` if nothing came. On any thread, also between two updates."""
         with self._lock:
             waiting = list(self._waiting)
         for arrival in reversed(waiting):
@@ -99,7 +99,7 @@ class Source:
                     "" if all_is_well else self._why_useless(waiting))
 
     def collect(self) -> list[Observation]:
-        """What counts now."""
+        """The observations that count now."""
         with self._lock:
             waiting, silent = list(self._waiting), not self._heard
             self._heard = False
@@ -132,14 +132,14 @@ class Source:
         self._fault = fault
 
     def _note(self, arrival: _Arrival) -> None:
-        """The newest that was placed."""
+        """Take note of the newest message that was transformed."""
         self._newest, self._placed_at, self._fault = arrival, arrival.at, ""
         if self._complained:
             self._complaints.present(self._usable)
             self._complained = False
 
     def _why_useless(self, waiting: list[_Arrival]) -> str:
-        """Empty where tf says it, or nothing waits."""
+        """Why no message is usable; "" if tf is the reason, or none is waiting."""
         if self._fault or not waiting:
             return self._fault
         message = waiting[-1].message
@@ -189,9 +189,9 @@ class Source:
             self._waiting.extend(left)
 
     def _placed(self, arrival: _Arrival) -> Observation | None:
-        """The message in the costmap's frame; None while tf cannot say where that is.
+        """The message in the costmap's frame; None while tf lacks the transform.
 
-        None for good, where it makes no sense: it says nothing of what is there.
+        Always None for an invalid message, which says nothing about obstacles.
         """
         message = arrival.message
         stamp, frame = message.header.stamp, message.header.frame_id.lstrip("/")
@@ -216,13 +216,13 @@ class Source:
                            settings["raytrace_range"])
 
     def _can_be_placed(self, message: Any) -> bool:
-        """As `_placed` would, without a word where it cannot be yet; clouds are not looked into."""
+        """Whether `_placed` would succeed, without logging; points of clouds are not checked."""
         stamp, frame = message.header.stamp, message.header.frame_id
         if not (self._is_known(frame, stamp)
                 and self._is_known(self._sensor_frame or frame, stamp)):
             return False
         if self._fault and self.settings["data_type"] != "LaserScan":
-            return False  # it would take too long to look at each
+            return False  # checking each would take too long
         try:
             sweep = self._sweep(message)
         except ValueError:
@@ -230,11 +230,11 @@ class Source:
         return not sweep or self._is_known(frame, stamp + rospy.Duration(sweep))
 
     def _is_known(self, frame: str, stamp: rospy.Time) -> bool:
-        frame = frame.lstrip("/")  # tf2 prints a warning of its own for one without a name
+        frame = frame.lstrip("/")  # tf2 prints a warning of its own for an empty name
         return bool(frame) and self._transforms.buffer.can_transform(self._frame, frame, stamp)
 
     def _sweep(self, message: Any) -> float:
-        """s from its stamp to its last beam that counts; 0 of a cloud. Raises ValueError."""
+        """s from its stamp to its last valid beam; 0 for a cloud. Raises ValueError."""
         if self.settings["data_type"] != "LaserScan":
             return 0.0
         when = self._points(message)[1]

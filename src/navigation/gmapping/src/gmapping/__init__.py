@@ -1,1 +1,1 @@
-"""Maps from a laser and odometry, under gmapping's names."""
+"""Maps from a laser and odometry, with gmapping's interface."""

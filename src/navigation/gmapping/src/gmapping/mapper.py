@@ -1,4 +1,4 @@
-"""From scan messages to the algorithm and back; no topics, no clock: node and replay share it."""
+"""Connects scan messages with the algorithm; no topics, no clock: used by node and replay."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from nav_nodes.mount import Mount
 from nav_nodes.parameters import ParameterError
 
 TABLE = Path("params/slam_gmapping.yaml")  # below the package's folder
-BEYOND = 0.01  # m below the sensor's reach a range begins to say nothing
-LARGEST = 5e8  # cells, of 8 bytes while it is made
-LARGEST_SCAN = 5e7  # cells about one scan, of 16 bytes and more: 177 m to each side at 5 cm
+BEYOND = 0.01  # m below the sensor's maximum, from which on a range counts as no return
+LARGEST = 5e8  # cells, of 8 bytes each while the map is built
+LARGEST_SCAN = 5e7  # cells around one scan, of 16 bytes or more: 177 m to each side at 5 cm
 
 
 class ScanError(ValueError):
-    """A scan that no map can be made of; the text says why and what to write."""
+    """A scan that cannot be used for a map; the text says why and what to change."""
 
 
 def settings_from(values: dict[str, Any], range_max: float) -> SlamSettings:
-    """The algorithm's settings, for a laser that reaches so far, m."""
+    """The algorithm's settings, for a laser with this maximum range, m."""
     chosen = {field.name: values[field.name] for field in fields(SlamSettings)}
     if chosen["maxRange"] < 0:
         chosen["maxRange"] = range_max - BEYOND
@@ -35,7 +35,7 @@ def settings_from(values: dict[str, Any], range_max: float) -> SlamSettings:
 
 
 def check_extent(values: dict[str, Any]) -> None:
-    """Raises ParameterError for a map that has no cells, or too many."""
+    """Raises ParameterError if the map would have no cells, or too many."""
     cells = 1.0
     for low, high in (("xmin", "xmax"), ("ymin", "ymax")):
         if not values[low] < values[high]:
@@ -49,14 +49,14 @@ def check_extent(values: dict[str, Any]) -> None:
 
 
 def ranges_of(scan: LaserScan) -> np.ndarray:
-    """(N,), m; below range_min stands range_max: as upstream, nothing was there."""
+    """Ranges (N,), m; those below range_min become range_max (no return), as upstream."""
     ranges = np.array(scan.ranges, float)
     with np.errstate(invalid="ignore"):
         return np.where(ranges < scan.range_min, scan.range_max, ranges)
 
 
 class Mapper:
-    """Made with the first scan's settings; one laser, one robot."""
+    """Builds the map of one robot with one laser; the first scan determines the settings."""
 
     def __init__(self, values: dict[str, Any]) -> None:
         """`values` by the names of the parameter table; raises ParameterError."""
@@ -68,14 +68,14 @@ class Mapper:
         self.slam: ParticleSlam | None = None
 
     def is_wanted(self) -> bool:
-        """Whether the next scan is one of those that throttle_scans lets through; counts it."""
+        """Counts a scan; whether throttle_scans lets it through."""
         self._seen += 1
         return (self._seen - 1) % self._values["throttle_scans"] == 0
 
     def take(self, scan: LaserScan, odometry: np.ndarray, mount: Mount) -> bool:
         """True if the scan was used. `odometry` (x, y, yaw) of the robot at the scan's stamp.
 
-        Raises ScanError; all is as if that scan had not come, also where it was the first.
+        Raises ScanError, and then leaves everything unchanged, even if the scan was the first.
         """
         settings = (self.slam.settings if self.slam
                     else settings_from(self._values, scan.range_max))
@@ -91,7 +91,7 @@ class Mapper:
         return used
 
     def _extent_with(self, reach: float, odometry: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(lower, upper) (x, y), m, of the map with a scan of that reach; raises ScanError."""
+        """Bounds (lower, upper), each (x, y), m, of the map with this scan; raises ScanError."""
         x, y, _ = poses.compose(self.slam.map_to_odom, odometry) if self.slam else odometry
         lower = np.minimum(self._lower, (x - reach, y - reach))
         upper = np.maximum(self._upper, (x + reach, y + reach))
@@ -107,7 +107,7 @@ class Mapper:
 
 
 def _reach(ranges: np.ndarray, settings: SlamSettings) -> float:
-    """How far from the laser the farthest beam ends that says anything, m."""
+    """The longest valid range, m, at most maxUrange."""
     with np.errstate(invalid="ignore"):
         told = ranges[(ranges <= settings.maxRange) & np.isfinite(ranges)]
     return min(told.max(initial=0.0), settings.maxUrange)

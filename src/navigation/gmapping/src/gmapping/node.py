@@ -26,15 +26,15 @@ from nav_nodes.program import init_node, spin
 from nav_nodes.silence import Silence
 from nav_nodes.transforms import Transforms
 
-PATIENCE = 0.5  # s of wall time that a scan waits for the odometry of its moment
-DISORDER = 1.0  # s by which scans of two lasers may come in the wrong order
+PATIENCE = 0.5  # s of wall time to wait for a scan's odometry
+DISORDER = 1.0  # s by which scans of two lasers may be out of order
 
 
 class SlamNode:
-    """Scans and transforms come in; the map and the transform from map to odom go out.
+    """Takes scans and transforms; publishes the map and the transform from map to odom.
 
-    After the clock was set back upstream's node may fail; this one goes on with its map. The
-    scans of two lasers come on two threads, and are mapped one at a time under one lock.
+    When the clock is set back, upstream's node may fail; this one goes on with its map. Scans of
+    two lasers come on two threads, and are mapped one at a time under a lock.
     """
 
     def __init__(self, values: dict) -> None:
@@ -69,7 +69,7 @@ class SlamNode:
                 self._use_scan(scan)
 
     def _use_scan(self, scan: LaserScan) -> None:
-        """Waits for its odometry outside the lock: one laser's is no reason for others to wait."""
+        """Waits for the scan's odometry outside the lock, not to block another laser's scans."""
         with self._lock:
             self._look_at_clock(scan.header.stamp)
         mount = self._mounts.of(scan.header.frame_id)
@@ -109,17 +109,17 @@ class SlamNode:
         self._entropy_topic.publish(self._mapper.slam.entropy)
 
     def _answer_map(self, _request: GetMapRequest) -> GetMapResponse | None:
-        """The newest map; the call fails while there is none, as upstream's."""
+        """The newest map; the call fails while there is none, as in upstream."""
         return None if self._map is None else MapAnswer(self._map)
 
     def _broadcast(self) -> None:
-        """The transform, at the wall's pace, and a look at whether scans still come."""
+        """Broadcasts the transform at a wall-clock rate, and checks whether scans still come."""
         period = self._values["transform_publish_period"]
         delay = self._values["tf_delay"] if self._values["tf_delay"] >= 0 else period
         broadcaster, last = tf2_ros.TransformBroadcaster(), rospy.Time(0)
         while not rospy.is_shutdown():
             now = rospy.Time.now()
-            if period > 0 and now != last:  # the same stamp twice is a warning in every listener
+            if period > 0 and now != last:  # a repeated stamp makes every listener warn
                 broadcaster.sendTransform(transform_message(
                     self._map_to_odom, self._frames["map_frame"], self._frames["odom_frame"],
                     now + rospy.Duration.from_sec(delay)))
@@ -129,7 +129,7 @@ class SlamNode:
 
 
 def main() -> None:
-    """Runs the node until it is told to end."""
+    """Runs the node until shutdown."""
     init_node("slam_gmapping")
     folder = Path(rospkg.RosPack().get_path("gmapping"))
     try:

@@ -1,4 +1,4 @@
-"""slam_gmapping_replay: a bag in, a map and a trajectory out, as fast as it can. No master."""
+"""slam_gmapping_replay: map and trajectory from a bag, as fast as possible. No master."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ SCANS = ("sensor_msgs/LaserScan",)
 TRANSFORMS = ("tf2_msgs/TFMessage", "tf/tfMessage")
 BAG_ERRORS = (OSError, ValueError, rosbag.ROSBagException, genpy.MessageException,
               genmsg.MsgNotFound, genmsg.InvalidMsgSpec)
-FAR, END = 2.0e9, 2**32 - 100  # s: stamps so far apart, or so late, let tf2 end the process
-WAITING = 5.0  # s between stamps; a scan so far behind the newest, without odometry, is left out
+FAR, END = 2.0e9, 2**32 - 100  # s: stamps so far apart, or so late, make tf2 abort
+WAITING = 5.0  # s; a scan that is older than the newest by this, without odometry, is skipped
 
 
 class BagError(Exception):
-    """A bag that cannot be read, or of which no map can be made."""
+    """A bag cannot be read, or no map can be made from it."""
 
 
 class BagScans:
     """The scans of a bag with odometry and mount, in the bag's order."""
 
     def __init__(self, path: Path, topic: str, odom_frame: str, base_frame: str) -> None:
-        """Raises BagError where there is no readable bag; so does whoever reads on."""
+        """Raises BagError if there is no readable bag; iterating may raise it, too."""
         with _bag_errors():
             self._bag = rosbag.Bag(str(path))
         self._topics = [topic.lstrip("/"), "/" + topic.lstrip("/")]
@@ -58,7 +58,7 @@ class BagScans:
         self._missing = ""
 
     def why_none(self) -> str:
-        """Why there was no scan that a map can be made of, after all were read."""
+        """Why no scan was usable, after all were read."""
         if self.left_out:
             return (f"none of the {self.left_out} scans on {self._topics[1]} can be placed"
                     + self._missing)
@@ -92,7 +92,7 @@ class BagScans:
                 if kind not in kinds[topic]:
                     raise BagError(f"{topic} is of {kind}, not {kinds[topic][0]}")
                 made = LaserScan() if kind in SCANS else TFMessage()
-                yield topic, made.deserialize(data)  # a bag says itself what its types are made of
+                yield topic, made.deserialize(data)  # a bag contains its message definitions
 
     def _keep(self, message: Any, is_static: bool) -> None:
         keep = (self._transforms.set_transform_static if is_static
@@ -104,7 +104,7 @@ class BagScans:
                 keep(transform, "bag")
 
     def _is_usable(self, header: Header) -> bool:
-        """Whether tf2 can be asked about it; a stamp of 0 is a static transform's."""
+        """Whether tf2 can handle its stamp and frame; stamp 0: of a static transform."""
         stamp = header.stamp.to_sec()
         if stamp and self._first_stamp is None:
             self._first_stamp = stamp
@@ -112,7 +112,7 @@ class BagScans:
             not stamp or (stamp < END and abs(stamp - self._first_stamp) < FAR))
 
     def _ready(self, waiting: deque[LaserScan]) -> Iterator[tuple[LaserScan, np.ndarray, Mount]]:
-        """Those at the queue's head whose transforms are known."""
+        """Yields scans from the queue's head while their transforms are known."""
         odom, base = self._frames
         while waiting:
             scan = waiting[0]
@@ -133,13 +133,13 @@ class BagScans:
 
 
 def _short(names: str) -> str:
-    """What a bag says of names, on one line."""
+    """Text from a bag, as one short line."""
     return " ".join(names.split())[:200]
 
 
 @contextlib.contextmanager
 def _bag_errors() -> Iterator[None]:
-    """What rosbag raises while it reads, as a BagError."""
+    """Converts what rosbag raises while it reads to a BagError."""
     try:
         yield
     except BAG_ERRORS as error:
@@ -172,16 +172,16 @@ def values_from(settings: list[str], seed: int | None, params: Path | None) -> d
 
 
 def _yaml(text: str, where: str) -> Any:
-    """Its value; raises ParameterError with the place that it comes from."""
+    """The parsed value; raises ParameterError that names `where`."""
     try:
         return yaml.safe_load(text)
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise ParameterError(f"{where:.500} is not valid YAML: "
                              f"{' '.join(str(error).split())[:200]}") from None
 
 
 def write_trajectory(path: Path, stamps: np.ndarray, poses: np.ndarray) -> None:
-    """One line a pose, "stamp x y z qx qy qz qw", as TUM's tools for trajectories read it."""
+    """Write one line per pose, "stamp x y z qx qy qz qw", the TUM trajectory format."""
     lines = [f"{stamp:.9f} {x:.6f} {y:.6f} 0 0 0 {np.sin(yaw / 2):.9f} {np.cos(yaw / 2):.9f}\n"
              for stamp, (x, y, yaw) in zip(stamps, poses, strict=True)]
     path.write_text("".join(lines), encoding="utf-8")

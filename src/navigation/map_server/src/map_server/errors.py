@@ -1,4 +1,4 @@
-"""What can be wrong with a map's files; each text is one line that says what to write instead."""
+"""Errors in a map's files; each text is one line that says what to write instead."""
 
 
 class MapFileError(ValueError):
@@ -10,7 +10,7 @@ class MapMissingError(MapFileError):
 
 
 class MapMetadataError(MapFileError):
-    """The YAML file is no description of a map."""
+    """The YAML file is not a valid map description."""
 
 
 class MapImageError(MapFileError):

@@ -1,4 +1,4 @@
-"""The image of a map: read by OpenCV, with its size looked at before."""
+"""The image of a map: its size is checked before OpenCV decodes it."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class MapImage:
 
     sums: np.ndarray  # (rows, columns) uint16, 0 to 255 * channels: the colours' sum
     channels: int  # 1 or 3, without alpha
-    transparent: np.ndarray | None  # (rows, columns) bool, wholly so; None without alpha
+    transparent: np.ndarray | None  # (rows, columns) bool: fully transparent; None without alpha
 
 
 def read_image(path: Path) -> MapImage:
-    """Any format of OpenCV's; raises MapImageError. Deeper images are brought to 8 bits."""
+    """Reads any format of OpenCV's; raises MapImageError. Deeper images are converted to 8 bits."""
     try:
         content = read_file(path, LARGEST_FILE)
     except (FileNotFoundError, NotADirectoryError):
@@ -53,9 +53,9 @@ def read_image(path: Path) -> MapImage:
 
 
 def _header(content: bytes) -> tuple[int, int, int]:
-    """(width, height, value of white) as the file's first bytes give them; 0: not said there.
+    """(width, height, value of white) from the file's header; 0 if not found there.
 
-    White only of binary graymaps and pixmaps: of those as text OpenCV sees to it.
+    White only for binary PGM and PPM; OpenCV scales text ones itself.
     """
     if found := PNM.match(content):
         return int(found[2]), int(found[3]), int(found[4] or 0) if found[1] in b"56" else 0
@@ -73,8 +73,8 @@ def _check_size(path: Path, width: int, height: int) -> None:
 def _decode(path: Path, content: bytes) -> np.ndarray:
     """(rows, columns) or (rows, columns, 3 or 4)."""
     if content[:2] in (b"P1", b"P2", b"P3"):
-        content += b"\n"  # without it OpenCV misses the last number
-    told = cv2.setLogLevel(0)  # else it says something, too
+        content += b"\n"  # otherwise OpenCV misses the last number
+    told = cv2.setLogLevel(0)  # else OpenCV logs the error, too
     try:
         pixels = cv2.imdecode(np.frombuffer(content, np.uint8), cv2.IMREAD_UNCHANGED)
     except cv2.error:
@@ -88,7 +88,7 @@ def _decode(path: Path, content: bytes) -> np.ndarray:
 
 
 def _to_8_bits(path: Path, pixels: np.ndarray, brightest: int) -> np.ndarray:
-    """The same with white at 255; `brightest` is white's value if the file says it, else 0."""
+    """The pixels scaled to white at 255; `brightest`: white's value in the file, 0 if unknown."""
     if pixels.dtype not in (np.uint8, np.uint16):
         raise MapImageError(f"{path}: has pixels of type {pixels.dtype}; save it with 8 bits")
     white = brightest or np.iinfo(pixels.dtype).max

@@ -1,4 +1,4 @@
-"""Maps from files and into files, as map_server and map_saver know them; needs no ROS."""
+"""Reads and writes maps in the format of map_server and map_saver; needs no ROS."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from map_server.image import MapImage, read_image
 from map_server.metadata import MapMetadata, read_metadata
 from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 
-WHITE, GREY, BLACK = 254, 205, 0  # of free, unknown and occupied pixels that are written
+WHITE, GREY, BLACK = 254, 205, 0  # values written for free, unknown and occupied cells
 
 
 def read_map(path: Path | str) -> tuple[OccupancyGrid, float]:
@@ -25,7 +25,7 @@ def read_map(path: Path | str) -> tuple[OccupancyGrid, float]:
 
 
 def load_map(metadata: MapMetadata) -> tuple[OccupancyGrid, float]:
-    """The map that a description leads to, and its origin's yaw, rad. Raises MapImageError."""
+    """The map of a description, and its origin's yaw, rad. Raises MapImageError."""
     cells = cells_of(read_image(metadata.image), metadata)
     return OccupancyGrid(cells, metadata.resolution, metadata.origin), metadata.yaw
 
@@ -33,9 +33,9 @@ def load_map(metadata: MapMetadata) -> tuple[OccupancyGrid, float]:
 def cells_of(image: MapImage, metadata: MapMetadata) -> np.ndarray:
     """Cells int8 (rows, columns), row 0 the lowest, of an image.
 
-    Alpha is no colour here; upstream averages it with them in trinary mode, by which grey pixels
-    of a picture with alpha become free. Wholly transparent pixels that are not dark are unknown.
-    In raw mode pixels from 128 on come out below 0, as they do from upstream's 8 bits.
+    Alpha does not count as a colour; upstream averages it with the colours in trinary mode, so that
+    grey pixels become free. Fully transparent pixels that are not dark are unknown. In raw mode
+    pixels from 128 on become negative, as in upstream's int8.
     """
     mean = np.arange(255 * image.channels + 1) / image.channels
     if metadata.negate:
@@ -57,12 +57,12 @@ def cells_of(image: MapImage, metadata: MapMetadata) -> np.ndarray:
 
 
 def _upright(cells: np.ndarray) -> np.ndarray:
-    """Between an image, whose row 0 is the highest, and a map, whose row 0 is the lowest."""
+    """Flips between an image, with row 0 at the top, and a map, with row 0 at the bottom."""
     return np.ascontiguousarray(np.flipud(cells))
 
 
 def check_target(name: Path) -> None:
-    """Raises MapFileError with one line where NAME.pgm and NAME.yaml cannot be written."""
+    """Raises MapFileError with one line if NAME.pgm and NAME.yaml cannot be written."""
     folder = name.parent
     if not folder.is_dir():
         raise MapFileError(f"{folder}: there is no such folder; make it first: mkdir -p {folder}")
@@ -77,7 +77,7 @@ def check_target(name: Path) -> None:
 
 def write_map(name: Path | str, grid: OccupancyGrid, yaw: float = 0.0, occupied: int = 65,
               free: int = 25) -> tuple[Path, Path]:
-    """Write NAME.pgm and NAME.yaml, whole or not at all; returns their paths.
+    """Write NAME.pgm and NAME.yaml, completely or not at all; returns their paths.
 
     Cells from `occupied` on are black, those from 0 to `free` white, percent. `image:` has no
     folder in it: the two files may be moved together. Raises MapFileError.
@@ -115,7 +115,7 @@ def _pgm(grid: OccupancyGrid, occupied: int, free: int) -> bytes:
 
 
 def _yaml(image: str, grid: OccupancyGrid, yaw: float) -> bytes:
-    """Numbers as short as they can be without losing a bit; messages hold 32 for a resolution."""
+    """The YAML text, with the shortest exact numbers; a message's resolution is float32."""
     x, y, turn = (np.format_float_positional(number, trim="0") for number in (*grid.origin, yaw))
     resolution = np.format_float_positional(np.float32(grid.resolution), trim="0")
     return (f"image: {_quoted(image)}\nresolution: {resolution}\norigin: [{x}, {y}, {turn}]\n"
@@ -123,7 +123,7 @@ def _yaml(image: str, grid: OccupancyGrid, yaw: float) -> bytes:
 
 
 def _quoted(text: str) -> str:
-    """As a YAML value; plain where nothing in it means anything."""
+    """The text as a YAML value, unquoted if it has no special characters."""
     if all(letter.isalnum() or letter in "._-" for letter in text) and not text.startswith("-"):
         return text
     return json.dumps(text, ensure_ascii=False)

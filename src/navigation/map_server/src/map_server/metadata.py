@@ -1,4 +1,4 @@
-"""The YAML file of a map: what it must hold, checked key by key."""
+"""The YAML file of a map, checked key by key."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from map_server.files import read_file
 
 MODES = ("trinary", "scale", "raw")
 LARGEST = 1 << 20  # bytes; a description has a few hundred
-LONGEST_NAME = 1024  # characters; Linux opens no path of more than 4096 bytes
-FINEST, COARSEST = 1e-6, 1000.0  # m a pixel; a message's 32 bits make 0 of 1e-46, inf of 4e38
-FARTHEST = 1e9  # m from 0; near 1e300 what is reckoned with it is inf
-IMAGE = re.compile(rb"P[1-6]\s|\x89PNG|\xff\xd8\xff|BM|GIF8")  # how files of images begin
+LONGEST_NAME = 1024  # characters; Linux allows paths of at most 4096 bytes
+FINEST, COARSEST = 1e-6, 1000.0  # m per pixel; in a message's float32 1e-46 is 0, and 4e38 inf
+FARTHEST = 1e9  # m from 0; near 1e300 calculations overflow
+IMAGE = re.compile(rb"P[1-6]\s|\x89PNG|\xff\xd8\xff|BM|GIF8")  # magic numbers of image files
 EXAMPLES = {
     "image": "image: map.pgm",
     "resolution": "resolution: 0.05",
@@ -34,7 +34,7 @@ EXAMPLES = {
 
 @dataclass(frozen=True)
 class MapMetadata:
-    """How the image becomes a map; thresholds are probabilities, 0 to 1."""
+    """How to convert the image to a map; thresholds are probabilities, 0 to 1."""
 
     image: Path
     resolution: float  # m a pixel
@@ -49,7 +49,7 @@ class MapMetadata:
 def read_metadata(path: Path) -> MapMetadata:
     """The description in a YAML file; raises MapMissingError or MapMetadataError.
 
-    Keys that it does not know are passed over, as upstream's reader does.
+    Unknown keys are ignored, as in upstream.
     """
     keys = _Keys(path, _load(path))
     image = keys.text("image")
@@ -73,7 +73,7 @@ def read_metadata(path: Path) -> MapMetadata:
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML without `<<`: ten lines of that can stand for a billion values."""
+    """YAML without merge keys (`<<`): ten lines of those can expand to a billion values."""
 
     def flatten_mapping(self, node: yaml.Node) -> None:
         """Leaves the key as it is, which SafeLoader then refuses."""
@@ -96,7 +96,7 @@ def _load(path: Path) -> dict[str, Any]:
                                f"bytes")
     try:
         found = yaml.load(content, _Loader)
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         reason = " ".join(str(error).split())[:200]
         raise MapMetadataError(f"{path}: is not valid YAML: {reason}; write KEY: VALUE lines such "
                                f"as {EXAMPLES['resolution']}") from None
@@ -106,16 +106,16 @@ def _load(path: Path) -> dict[str, Any]:
 
 
 class _Keys:
-    """The values by key, each checked when it is taken."""
+    """The values by key, each checked when read."""
 
     def __init__(self, path: Path, values: dict[str, Any]) -> None:
         self.path, self.values = path, values
 
     def wrong(self, key: str, what: str) -> MapMetadataError:
         """The error for a key's value."""
-        try:  # a YAML alias can repeat itself 10^9 times
+        try:  # YAML aliases can expand to 10^9 values
             value = reprlib.repr(self.values[key])[:80]
-        except ValueError:  # Python spells no such number out
+        except ValueError:  # Python refuses to print integers this long
             value = "a number of thousands of digits"
         return MapMetadataError(f"{self.path}: {key} is {value}, but {what}; write for example "
                                 f"{EXAMPLES[key]}")
@@ -161,7 +161,7 @@ class _Keys:
 
 
 def _finite(value: Any) -> float | None:
-    """A number, also one that PyYAML takes for text (5e-2); None for everything else."""
+    """A finite number, also one that PyYAML reads as text (5e-2); None for everything else."""
     if isinstance(value, bool):
         return None
     try:

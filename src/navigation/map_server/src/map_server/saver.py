@@ -1,4 +1,4 @@
-"""The node map_saver: one map that is published, into two files."""
+"""The node map_saver: saves one published map as two files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ POLL = 0.5  # s of wall time
 
 
 class MapSaver:
-    """Waits for one map, and says what it waits for."""
+    """Waits for one map, and logs what it waits for."""
 
     def __init__(self) -> None:
         """rospy is initialised."""
@@ -30,7 +30,7 @@ class MapSaver:
         rospy.loginfo("Waiting for the map")
 
     def wait(self) -> OccupancyGrid | None:
-        """The first map that came; None if the node is told to end before."""
+        """The first map received; None if the node is shut down before."""
         complaints = Complaints()
         while not self._came.wait(POLL) and not rospy.is_shutdown():
             complaints.missing(f"map on {self._maps.resolved_name}", self._why())
@@ -61,7 +61,7 @@ def main() -> int:
                       grid.resolution)
         paths = write_map(options.f, grid, yaw_of(message.info.origin.orientation), options.occ,
                           options.free)
-    except ValueError as error:  # MapFileError, and what grid_of and OccupancyGrid refuse
+    except ValueError as error:  # MapFileError, or an invalid map in grid_of or OccupancyGrid
         print(f"map_saver: {error}", file=sys.stderr)
         return 1
     rospy.loginfo("Wrote %s and %s", *paths)

@@ -1,4 +1,4 @@
-"""The node map_server: the map of a file, on topics and by services."""
+"""The node map_server: serves a map from a file, by topics and services."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ RESULTS = {MapMissingError: LoadMapResponse.RESULT_MAP_DOES_NOT_EXIST,
 
 
 class MapServer:
-    """Publishes one map, latched, until another takes its place.
+    """Publishes one map, latched, until it is replaced.
 
-    change_map says what was wrong by its result; upstream answers 255 to everything.
+    change_map's result tells what was wrong; upstream answers 255 to every error.
     """
 
     def __init__(self, loaded: tuple, frame: str) -> None:
-        """`loaded` is what read_map gives; rospy is initialised and its clock runs."""
+        """`loaded` is read_map's result; rospy is initialised and its clock runs."""
         self._frame = frame
         self._lock = threading.Lock()
         self._map_topic = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
@@ -79,7 +79,7 @@ class MapServer:
 
 
 def main() -> int:
-    """Runs the node until it is told to end; the exit status."""
+    """Runs the node until shutdown; returns the exit status."""
     arguments = rospy.myargv()[1:]
     if arguments and arguments[0] in ("-h", "--help"):
         print(USAGE)

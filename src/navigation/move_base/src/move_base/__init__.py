@@ -1,1 +1,1 @@
-"""Navigation to goals, behind the names of upstream's move_base."""
+"""Navigation to goals, with the interface of upstream's move_base."""

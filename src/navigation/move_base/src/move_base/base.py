@@ -1,4 +1,4 @@
-"""The robot's base: what it is told to do, what it says of its velocity, and how it is stopped."""
+"""The robot's base: velocity commands, velocity from odometry, and stopping."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from nav_msgs.msg import Odometry
 
 from move_base.stop_guard import DRIVEN, STANDING
 
-SLOWEST = (0.5, 1.0)  # m/s and rad/s; who is told less than that may still be pushed
+SLOWEST = (0.5, 1.0)  # m/s and rad/s; a robot commanded less may still be pushed this fast
 
 TOPICS = {"twist": ("cmd_vel", Twist), "ackermann": ("ackermann_cmd", AckermannDriveStamped)}
 
@@ -28,7 +28,7 @@ def twist(velocity: np.ndarray) -> Twist:
 
 
 def ackermann(velocity: np.ndarray, wheelbase: float, stamp: rospy.Time) -> AckermannDriveStamped:
-    """A car's command of (vx, _, omega), its front wheels turned as `wheelbase`, m, asks for."""
+    """A car's command for (vx, _, omega), with the steering angle for `wheelbase`, m."""
     message = AckermannDriveStamped()
     message.header.stamp = stamp
     message.drive.speed = float(velocity[0])
@@ -38,7 +38,7 @@ def ackermann(velocity: np.ndarray, wheelbase: float, stamp: rospy.Time) -> Acke
 
 
 class Base:
-    """Publishes velocities. With a guard a process beside this one waits to stop the robot."""
+    """Publishes velocities. With a guard, a second process stops the robot if this one dies."""
 
     def __init__(self, command_type: str, wheelbase: float, odom_topic: str, guarded: bool) -> None:
         self._kind, self._wheelbase = command_type, wheelbase
@@ -51,7 +51,7 @@ class Base:
         self._slow_for = 0.0
         self._velocity = np.zeros(3)
         self._possible = np.inf, np.inf
-        self.odometry_fault = ""  # of its last message, which then counts as missing
+        self.odometry_fault = ""  # fault in its last message, which then counts as missing
         self.heard: rospy.Time | None = None
         self._odometry: rospy.Subscriber | None = None
         self.listen_to(odom_topic)
@@ -65,43 +65,43 @@ class Base:
 
     @property
     def velocity(self) -> np.ndarray:
-        """(vx, vy, omega) as odometry has it, m/s and rad/s; finite."""
+        """(vx, vy, omega) from odometry, m/s and rad/s; finite."""
         return self._velocity
 
     def expect(self, speed: float, turn: float, factor: float) -> None:
-        """The robot is told `speed`, m/s, and `turn`, rad/s, at most.
+        """Commands will not exceed `speed`, m/s, and `turn`, rad/s.
 
-        Odometry that says more than `factor` times that counts as missing; 0: only what is no
-        number does.
+        Odometry with more than `factor` times that counts as missing; factor 0: only odometry that
+        is not finite does.
         """
         self._possible = tuple(factor * max(told, least) if factor else np.inf
                                for told, least in zip((speed, turn), SLOWEST, strict=True))
 
     def limit(self, speed: float, turn: float, distance: float) -> None:
-        """Slower over the next `distance`, m: no more than `speed`, m/s, and `turn`, rad/s."""
+        """Limit the next `distance`, m, to `speed`, m/s, and `turn`, rad/s."""
         self._slow_for = distance
         self._limits = max(speed, 1e-3), max(turn, 1e-3)
 
     def drive(self, velocity: np.ndarray) -> None:
-        """(vx, vy, omega), m/s and rad/s; along the same arc, but slower, where it is limited."""
+        """Command (vx, vy, omega), m/s and rad/s; a limit slows it down along the same arc."""
         velocity = np.zeros(3) if self._closed else np.asarray(velocity, float)
-        limits = self._limits  # odometry's thread may end them meanwhile
+        limits = self._limits  # odometry's thread may reset them meanwhile
         if limits is not None:
             share = max(np.hypot(*velocity[:2]) / limits[0], abs(velocity[2]) / limits[1], 1.0)
             velocity = velocity / share
         driven = bool(velocity.any())
-        if driven:  # the guard knows before the robot moves, and until it was told to stop
+        if driven:  # told to the guard before the robot moves, and until it was commanded to stop
             self._tell_guard(True)
         self._publish(velocity)
         if not driven:
             self._tell_guard(False)
 
     def stop(self) -> None:
-        """Zero."""
+        """Command zero velocity."""
         self.drive(np.zeros(3))
 
     def close(self) -> None:
-        """Zero, and the guard goes: if zero came too late to be sent, it sends it."""
+        """Command zero and end the guard, which sends zero if this node no longer could."""
         self._closed = True
         self._publish(np.zeros(3))
         if self._guard is not None:
@@ -114,7 +114,7 @@ class Base:
         try:
             self._commands.publish(message)
         except rospy.ROSException:
-            pass  # the node ends
+            pass  # the node is ending
 
     def _take(self, message: Odometry) -> None:
         moving = message.twist.twist
@@ -134,7 +134,7 @@ class Base:
         self.heard = now
 
     def _fault_of(self, velocity: np.ndarray) -> str:
-        """Why it cannot be the robot's, or nothing."""
+        """Why this cannot be the robot's velocity, or ""."""
         speed, turn = self._possible
         if (np.isfinite(velocity).all() and math.hypot(*velocity[:2]) <= speed
                 and abs(velocity[2]) <= turn):
@@ -167,4 +167,4 @@ class Base:
                 self._guard.stdin.write(DRIVEN if driven else STANDING)
                 self._guard.stdin.flush()
             except (OSError, ValueError):
-                pass  # seen at the next command
+                pass  # noticed at the next command

@@ -1,4 +1,4 @@
-"""carrot_planner's plan: straight to the goal, or to the last place before it that is free."""
+"""carrot_planner's plan: straight to the goal, or to the last free place before it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from nav_algorithms.costmap.costs import Costmap
 
 @dataclass(frozen=True)
 class CarrotSettings:
-    """Names of carrot_planner/CarrotPlanner; m. A step of 0 is a cell."""
+    """Parameters of carrot_planner/CarrotPlanner; m. A step of 0 means one cell."""
 
     step_size: float
     min_dist_from_robot: float
@@ -20,14 +20,14 @@ class CarrotSettings:
 
 def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: np.ndarray,
          settings: CarrotSettings) -> np.ndarray | None:
-    """Path (2, 3): `start` and the place nearest to the goal, on the line to it, that is free.
+    """Path (2, 3): `start` and the free place nearest to the goal on the line to it.
 
-    Its yaw is the start's at the start and the goal's at the goal, and turns evenly between them.
-    None where that is nearer to the robot than `min_dist_from_robot`.
+    The yaw is interpolated linearly from the start's to the goal's. None if the place is nearer to
+    the robot than `min_dist_from_robot`.
     """
     start, goal = np.asarray(start, float), np.asarray(goal, float)
     distance = float(np.hypot(*(goal[:2] - start[:2])))
-    # From a robot in the costmap, nothing lies in it that is farther than this.
+    # No cell is farther than this from a robot in the costmap.
     farthest = min(distance, float(np.hypot(*costmap.cells.shape)) * costmap.resolution)
     steps = max(int(np.ceil(farthest / (settings.step_size or costmap.resolution))), 1)
     shares = np.linspace(farthest / distance if distance else 1.0, 0.0, steps + 1)[:, None]

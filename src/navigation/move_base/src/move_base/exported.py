@@ -1,11 +1,11 @@
-"""Planners in Python of anybody's package, found as pluginlib finds those in C++.
+"""Finds planners in Python in any package, as pluginlib finds those in C++.
 
 package.xml:  <export><nav_core plugin="${prefix}/planner_plugin.xml"/></export>
 that file:    <library path="src">
                 <class name="my_package/MyPlanner" type="my_package.my_module.MyPlanner"
                        base_class_type="nav_core::BaseGlobalPlanner"/>
               </library>
-`path`, below the package, is where the module is looked for, besides PYTHONPATH.
+`path`, relative to the package, is searched for the module, besides PYTHONPATH.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ NEEDED = {GLOBAL: ("initialize", "make_plan"),
 
 @dataclass(frozen=True)
 class Exported:
-    """One class of an XML file: `type` is module.Class, `folder` where the module may lie."""
+    """One class of an XML file: `type` is module.Class, `folder` is searched for the module."""
 
     name: str
     type: str
@@ -37,9 +37,9 @@ class Exported:
 
 
 def exported(base: str) -> dict[str, Exported]:
-    """The Python classes of that base in all packages, by name. C++ classes are left out.
+    """The Python classes with this base in all packages, by name. C++ classes are left out.
 
-    Raises ParameterError that names the file which cannot be read.
+    Raises ParameterError, which names the file, if one cannot be read.
     """
     packages = rospkg.RosPack()
     found = {}
@@ -52,7 +52,7 @@ def exported(base: str) -> dict[str, Exported]:
 
 
 def _exports(packages: rospkg.RosPack, package: str) -> list[str]:
-    """What its package.xml names; one that is broken is catkin's to complain about."""
+    """Files exported by its package.xml; a broken one is left for catkin to report."""
     try:
         return packages.get_manifest(package).get_export("nav_core", "plugin")
     except Exception:  # rospkg raises anything, UnboundLocalError among it
@@ -74,13 +74,13 @@ def _classes(package: str, attribute: str) -> list[Exported]:
 
 
 def load(entry: Exported) -> type:
-    """The class. Raises ParameterError that says what is wrong with it, and where."""
+    """The class. Raises ParameterError that says what is wrong, and where."""
     module, _, name = entry.type.rpartition(".")
     if str(entry.folder) not in sys.path:
         sys.path.append(str(entry.folder))
     try:
         found = getattr(importlib.import_module(module), name)
-    except Exception as error:  # whatever a learner's module does while it is imported
+    except Exception as error:  # importing a learner's module may raise anything
         raise ParameterError(f"{entry.file}: {entry.name} is {entry.type}, but "
                              f"{type(error).__name__}: {error}") from error
     missing = [method for method in NEEDED[entry.base] if not hasattr(found, method)]

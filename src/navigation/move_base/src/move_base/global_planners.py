@@ -1,4 +1,4 @@
-"""The global planners that can be chosen, each with upstream's topics and parameters."""
+"""The available global planners, each with upstream's topics and parameters."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class GlobalPlanner(Plugin, ABC):
     def __init__(self, costmap: CostmapROS) -> None:
         """`costmap`: the global one."""
         super().__init__()
-        self._publishing = threading.Lock()  # another may take its place while it plans
+        self._publishing = threading.Lock()  # another planner may replace it while it plans
         self._topic = (rospy.Publisher(f"~{self.NAME}/plan", Path, queue_size=1)
                        if self.PUBLISHES else None)
 
@@ -51,7 +51,7 @@ class GlobalPlanner(Plugin, ABC):
 
     def plan(self, costmap: Costmap, footprint: np.ndarray, start: np.ndarray,
              goal: np.ndarray, frame: str) -> np.ndarray | None:
-        """Path (N, 3) in the costmap's `frame`, or None; published, and if None as an empty one."""
+        """Path (N, 3) in the costmap's `frame`, or None; publishes it (None as an empty path)."""
         path = self._plan(costmap, footprint, start, goal)
         with self._publishing:
             if self._topic is not None and self._topic.get_num_connections():

@@ -1,4 +1,4 @@
-"""Goals as they are sent: what is wrong with them, and where they are."""
+"""Checks goals as they are received, and transforms them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ INVALID = "Aborting on goal because it was sent with an invalid quaternion"
 
 
 def fault_of(q: Quaternion) -> str | None:
-    """What is wrong with a goal's orientation, in upstream's words and by its limits."""
+    """The fault in a goal's orientation, in upstream's words and by its limits; or None."""
     square = q.x**2 + q.y**2 + q.z**2 + q.w**2
     if not math.isfinite(square):
         return "Quaternion has nans or infs... discarding as a navigation goal"
@@ -29,7 +29,7 @@ def fault_of(q: Quaternion) -> str | None:
 
 
 def in_frame(goal: PoseStamped, frame: str, transforms: Transforms) -> np.ndarray | None:
-    """(3,) of a pose in `frame`, by the newest transform; None, with a line, if it has none."""
+    """The goal (3,) in `frame`, by the newest transform; None, with a logged line, if unknown."""
     own, place = goal.header.frame_id.lstrip("/"), pose_of(goal.pose)
     if not np.isfinite(place).all():
         rospy.logwarn_throttle(5.0, "A goal at x %g, y %g is nowhere", *place[:2])

@@ -1,4 +1,4 @@
-"""The local planners that can be chosen, each with upstream's topics and parameters."""
+"""The available local planners, each with upstream's topics and parameters."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from nav_nodes.parameters import ParameterError
 
 @dataclass(frozen=True)
 class Situation:
-    """What a local planner decides by: poses (3,) in the costmap's `frame`, velocity in the base's.
+    """A local planner's input: poses (3,) in the costmap's `frame`, velocity in the base frame.
 
     `path_frame` is the pose of the frame in which the path was planned.
     """
@@ -63,11 +63,11 @@ class LocalPlanner(Plugin):
                 self._planner.set_path(self._path)
 
     def _settings(self, values: dict[str, Any]) -> Any:
-        """Of the algorithm; raises ParameterError."""
+        """The algorithm's settings; raises ParameterError."""
         return settings_from(self.SETTINGS, values, controller_frequency=self._frequency)
 
     def at_frequency(self, controller_frequency: float) -> None:
-        """Commands will come so often, Hz."""
+        """Sets the rate of commands, Hz."""
         if controller_frequency != self._frequency:
             self._frequency = controller_frequency
             self.change(self.values)
@@ -80,16 +80,16 @@ class LocalPlanner(Plugin):
             self._local_plan.unregister()
 
     def set_path(self, path: np.ndarray, again: bool) -> None:
-        """Path (N, 3) to follow from now on. Raises ValueError for what is no path.
+        """Path (N, 3) to follow from now on. Raises ValueError if it is not a valid path.
 
-        `again`: on the way to the same goal as before.
+        `again`: to the same goal as before.
         """
         with self._lock:
             self._planner.set_path(path, again)
             self._path = path
 
     def fastest(self) -> tuple[float, float]:
-        """Speed, m/s, and turn rate, rad/s, that it never exceeds."""
+        """Greatest speed, m/s, and turn rate, rad/s."""
         with self._lock:
             return self._planner.limits().fastest
 
@@ -99,11 +99,11 @@ class LocalPlanner(Plugin):
             return self._planner.reached(situation.pose, situation.velocity, situation.path_frame)
 
     def command(self, situation: Situation) -> Command | None:
-        """The next velocity; None where there is none."""
+        """The next velocity; None if there is no valid one."""
         with self._lock:
             command = self._planner.command(situation.costmap, situation.footprint, situation.pose,
                                             situation.velocity, situation.path_frame)
-            if not self._closed:  # another may take its place while it looks for a command
+            if not self._closed:  # another planner may replace it meanwhile
                 self._publish(situation, command)
         return command
 
@@ -145,7 +145,7 @@ class TrajectoryRollout(LocalPlanner):
 
 
 class PurePursuit(LocalPlanner):
-    """car_planner/PurePursuit: follows a path as it was planned, backwards where it is."""
+    """car_planner/PurePursuit: follows a path as planned, including backward parts."""
 
     NAME, TABLE = "PurePursuit", "pure_pursuit"
     SETTINGS, PLANNER = pure_pursuit.PurePursuitSettings, pure_pursuit.PurePursuit

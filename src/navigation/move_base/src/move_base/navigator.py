@@ -1,4 +1,4 @@
-"""One goal after another: the loop that drives, by the state machine and what is known."""
+"""The control loop: drives to one goal after another, by the state machine."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Outcome:
 
 
 class Navigator:
-    """All that a cycle needs. The action's thread calls it."""
+    """Executes the cycles of the control loop. Called by the action's thread."""
 
     def __init__(self, costmaps: tuple[CostmapROS, CostmapROS], transforms: Transforms,
                  base: Base, watch: Watch, machine: StateMachine, planning: Planning,
@@ -43,29 +43,29 @@ class Navigator:
         self._watch, self._machine, self._planning = watch, machine, planning
         self.local_planner, self._recoveries = local_planner, recoveries
         self._recovering: Recovery | None = None
-        self._has_path = False  # to the present goal
+        self._has_path = False  # to the current goal
         self._progress = Progress()
         self._status = rospy.Publisher("~recovery_status", RecoveryStatus, queue_size=1)
 
     def begin(self, goal: PoseStamped) -> None:
-        """A goal, maybe in place of another."""
+        """Begin a goal, which may replace another."""
         self._base.stop()
         self._recovering, self._has_path = None, False
         self._progress.begin()
         self._planning.begin(self._machine.begin(rospy.get_time()), goal)
 
     def end(self) -> None:
-        """The robot stands, nothing is planned."""
+        """Stop the robot and the planning."""
         self._machine.end()
         self._recovering = None
         self._base.stop()
 
     def cycle(self, now: float, values: dict[str, Any]
               ) -> tuple[PoseStamped | None, Outcome | None]:
-        """One step at `now`, s: where the robot is, if known, and how the goal ended, if it has.
+        """One cycle at `now`, s; returns the robot's pose and the goal's outcome, or None for each.
 
-        While something is missing the robot stands, and patience does not run out. `values` are
-        move_base's.
+        While data is missing the robot stands and patience timers are held. `values`: move_base's
+        parameters.
         """
         self._base.expect(*self.local_planner.fastest(), values["odometry_factor"])
         pose = self._costmaps[0].robot_pose()
@@ -111,7 +111,7 @@ class Navigator:
         return None
 
     def _situation(self) -> Situation | None:
-        """What is known in the local costmap's frame; None where the path's is not."""
+        """The situation in the local costmap's frame; None if the path's frame is unknown."""
         fixed, local = self._costmaps
         pose = local.robot_pose()
         path_frame = (np.zeros(3) if fixed.global_frame == local.global_frame

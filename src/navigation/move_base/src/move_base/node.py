@@ -1,4 +1,4 @@
-"""The node move_base: its action, and all that it is made of."""
+"""The node move_base: its action and its parts."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ from nav_nodes.program import init_node, spin
 from nav_nodes.transforms import Transforms
 
 KILLED = "Aborting on the goal because the node has been killed"
-SLICE = 0.005  # s of wall time between two looks at the clock
+SLICE = 0.005  # s of wall time between two checks of the clock
 
 
 class MoveBase:
-    """Upstream's node. Made once; rospy is initialised."""
+    """The node, as upstream's. Make one only, after rospy.init_node."""
 
     def __init__(self) -> None:
-        """Raises ParameterError for parameters that make no sense, unknown planners among them."""
+        """Raises ParameterError for invalid parameters, including unknown planners."""
         values = self._values = read_parameters(table("move_base"))
         kinds = self._planner_kinds(values)
         complaints = Complaints()
@@ -84,7 +84,7 @@ class MoveBase:
         self._server.start()
         keep_telling(self._server)
         tables = {each.NAME: each.entries for each in (self._global_planner, driver)
-                  if each.TABLE}  # others' planners read what they like
+                  if each.TABLE}  # planners of other packages read what they like
         tables |= {each.name: each.entries for each in recoveries} | {"": table("move_base")}
         for each in self._costmaps:
             tables |= below(each.name, each.tables)
@@ -121,7 +121,7 @@ class MoveBase:
         self._goals.publish(goal)
 
     def _plan(self, goal: PoseStamped) -> np.ndarray | None:
-        """On the planner's thread."""
+        """Plan a path; called on the planner's thread."""
         costmap = self._costmaps[0]
         start = costmap.robot_pose() if costmap.is_ready() else None
         if start is None:
@@ -133,9 +133,9 @@ class MoveBase:
                                          start, place, costmap.global_frame)
 
     def _execute(self, goal: MoveBaseGoal) -> None:
-        """On the action's thread, until the goal, or what came in its place, has ended.
+        """Runs on the action's thread until the goal, or one that replaced it, has ended.
 
-        The robot stands then, also where something here failed; of that actionlib tells the client.
+        Stops the robot then, also after an exception, which actionlib reports to the client.
         """
         for costmap in self._costmaps if self._values["shutdown_costmaps"] else ():
             costmap.start()
@@ -154,7 +154,7 @@ class MoveBase:
             self._server.set_aborted(text=outcome.text)
 
     def _outcome_of(self, goal: MoveBaseGoal) -> Outcome | None:
-        """Of the goal, or of the last of those that came in its place; None if it was cancelled."""
+        """Outcome of the goal, or of the last one that replaced it; None if it was cancelled."""
         while True:
             fault = fault_of(goal.target_pose.pose.orientation)
             if fault is not None:
@@ -166,9 +166,9 @@ class MoveBase:
             goal = self._server.accept_new_goal()
 
     def _pursue(self, goal: PoseStamped) -> Outcome | None:
-        """Until the goal has ended; None if it was cancelled or another has come."""
+        """Drive until the goal has ended; None if it was cancelled or replaced."""
         place = in_frame(goal, self._costmaps[0].global_frame, self._transforms)
-        if place is not None:  # so that a goal seen from the robot stays where it was
+        if place is not None:  # so that a goal in the robot's frame stays where it was
             goal = stamped_pose(place, self._costmaps[0].global_frame, rospy.Time.now())
         self._navigator.begin(goal)
         self._current_goal.publish(goal)
@@ -187,7 +187,7 @@ class MoveBase:
         return None
 
     def _wait_until(self, began: float, period: float) -> None:
-        """The cycle's end; a cancelled goal does not wait for a clock that stands still."""
+        """Wait for the cycle's end; a cancelled goal does not wait for a paused clock."""
         now = rospy.get_time()
         while (began <= now < began + period and not rospy.is_shutdown()
                and not self._server.is_preempt_requested()):
@@ -197,7 +197,7 @@ class MoveBase:
             self._begin_time_anew(now)
 
     def _begin_time_anew(self, now: float) -> None:
-        """The clock was set back. Upstream then refuses every goal until it is where it was."""
+        """The clock was set back; upstream then refuses all goals until the old time is reached."""
         rospy.logwarn("the clock was set back to %.2f s: patience begins anew", now)
         self._machine.hold(now)
         for handle in (self._server.current_goal, self._server.next_goal):
@@ -209,17 +209,17 @@ class MoveBase:
             costmap.stop()
 
     def _close(self) -> None:
-        """The node ends: the robot stands, and the client knows."""
+        """At shutdown: stop the robot and tell the client."""
         self._base.close()
         try:
             if self._server.is_active():
                 self._server.set_aborted(text=KILLED)
         except rospy.ROSException:
-            pass  # its topics have gone already
+            pass  # its topics are already closed
 
 
 def main() -> int:
-    """Runs the node until it is told to end; the exit status."""
+    """Runs the node until shutdown; returns the exit status."""
     init_node("move_base")
     try:
         MoveBase()

@@ -1,4 +1,4 @@
-"""Planners of other packages, in the places of our own ones."""
+"""Adapters for planners of other packages."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ODOMETRY = Parameter("odom_topic", "str", "odom", meaning="odometry with the rob
 
 
 class OwnGlobalPlanner(GlobalPlanner):
-    """Of the class OWN: initialize(name, costmap), make_plan(start, goal) -> [PoseStamped]."""
+    """Wraps class OWN: initialize(name, costmap), make_plan(start, goal) -> [PoseStamped]."""
 
     OWN: type
 
@@ -48,7 +48,7 @@ class OwnGlobalPlanner(GlobalPlanner):
 
 
 class OwnLocalPlanner(LocalPlanner):
-    """Of the class OWN: initialize(name, tf, costmap), set_plan([PoseStamped]) -> bool,
+    """Wraps class OWN: initialize(name, tf, costmap), set_plan([PoseStamped]) -> bool,
     compute_velocity_commands() -> Twist or None, is_goal_reached() -> bool.
     """
 
@@ -76,7 +76,7 @@ class OwnLocalPlanner(LocalPlanner):
             self._path = path
 
     def fastest(self) -> tuple[float, float]:
-        """It does not say."""
+        """Unknown, so infinite."""
         return np.inf, np.inf
 
     def reached(self, situation: Situation) -> bool:
@@ -98,7 +98,7 @@ class OwnLocalPlanner(LocalPlanner):
 
 
 def global_planner(name: str, where: str) -> type[GlobalPlanner]:
-    """One of ours, or of anybody's package. Raises ParameterError that says what there is."""
+    """A planner of ours or of any package. Raises ParameterError that lists the known ones."""
     return _kind(name, where, GLOBAL_PLANNERS, exported.GLOBAL)
 
 
@@ -116,7 +116,7 @@ def _kind(name: str, where: str, ours: Mapping[str, type], base: str) -> type:
 
 @cache
 def _placed(entry: exported.Exported) -> type:
-    """One class for each, so that the same name is the same class again."""
+    """The adapter class, made once per entry, so that the same name gives the same class."""
     kind = OwnGlobalPlanner if entry.base == exported.GLOBAL else OwnLocalPlanner
     return type(entry.type.rpartition(".")[2], (kind,), {
         "NAME": entry.name.rpartition("/")[2], "OWN": exported.load(entry)})

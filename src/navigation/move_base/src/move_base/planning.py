@@ -1,4 +1,4 @@
-"""The thread that plans, beside the one that drives."""
+"""The planner thread, which runs besides the one that drives."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from geometry_msgs.msg import PoseStamped
 
 from move_base.state_machine import State, StateMachine
 
-SLICE = 0.02  # s of wall time between two looks at the clock
+SLICE = 0.02  # s of wall time between two checks of the clock
 
 
 class CannotPlanYet(Exception):
-    """It is not known where the robot is; that is no failure of the planner."""
+    """The robot's pose is unknown, which is not a failure of the planner."""
 
 
 class Planning:
-    """Plans for one goal, while the state machine wants it, and keeps the newest path."""
+    """Plans for one goal, whenever the state machine wants it, and keeps the newest path."""
 
     def __init__(self, machine: StateMachine, plan: Callable[[PoseStamped], np.ndarray | None],
                  pause_after_failure: Callable[[], float]) -> None:
-        """`plan` may raise CannotPlanYet; upstream's planner does not pause, and uses a core."""
+        """`plan` may raise CannotPlanYet; unlike upstream's planner, it pauses after a failure."""
         self._machine, self._plan, self._pause = machine, plan, pause_after_failure
         self._condition = threading.Condition()
         self._number, self._goal = 0, None
@@ -32,13 +32,13 @@ class Planning:
         threading.Thread(target=self._run, name="planner", daemon=True).start()
 
     def begin(self, number: int, goal: PoseStamped) -> None:
-        """A goal, with the number that the state machine gave it."""
+        """Plan for this goal, which has the state machine's number."""
         with self._condition:
             self._number, self._goal, self._path = number, goal, None
             self._condition.notify_all()
 
     def take_path(self) -> np.ndarray | None:
-        """The path (N, 3) that has come since the last call, if any."""
+        """The path (N, 3) planned since the last call, if any."""
         with self._condition:
             path, self._path = self._path, None
             return path
@@ -56,7 +56,7 @@ class Planning:
             except CannotPlanYet:
                 self._rest(number, began, self._pause())
                 continue
-            except Exception:  # a planner that fails has no path; this thread must go on
+            except Exception:  # an error counts as no path; this thread must go on
                 rospy.logerr_throttle(5.0, "The global planner failed: " + traceback.format_exc())
                 path = None
             with self._condition:
@@ -70,7 +70,7 @@ class Planning:
         return 1.0 / frequency if found and frequency > 0.0 else self._pause()
 
     def _rest(self, number: int, began: float, period: float) -> None:
-        """Until `period`, s, after `began`; not where there is a new goal or no path any more."""
+        """Wait until `period`, s, after `began`, or a new goal, or a new demand for a plan."""
         first = self._machine.state
         with self._condition:
             while (began <= rospy.get_time() < began + period and number == self._number

@@ -1,4 +1,4 @@
-"""What all that can be chosen by name has in common: a parameter table and its changes."""
+"""Base of everything that is chosen by name: a parameter table and its changes."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ def table(name: str) -> list[Parameter]:
 
 
 def settings_from(kind: type, values: Mapping[str, Any], **others: Any) -> Any:
-    """A settings dataclass from those values that are its fields; `others` come on top."""
+    """A settings dataclass from those values that are its fields; `others` override them."""
     names = {field.name for field in fields(kind)}
     return kind(**{**{name: values[name] for name in names & values.keys()}, **others})
 
 
 def chosen(name: str, known: Mapping[str, Any], where: str) -> Any:
-    """What has that name; upstream's older names without the package are taken, too.
+    """The entry of that name; upstream's older names without the package are accepted, too.
 
-    Raises ParameterError that says what there is.
+    Raises ParameterError that lists the known names.
     """
     found = {**{full.rpartition("/")[2]: kind for full, kind in known.items()}, **known}.get(name)
     if found is None:
@@ -45,7 +45,7 @@ def chosen(name: str, known: Mapping[str, Any], where: str) -> Any:
 
 
 class Plugin:
-    """Parameters from `~NAME/`, offered there by dynamic_reconfigure where they may change.
+    """Parameters from `~NAME/`, offered there by dynamic_reconfigure if they may change.
 
     Subclasses set NAME and TABLE, and take new values in `change`.
     """
@@ -54,7 +54,7 @@ class Plugin:
     TABLE = ""
 
     def __init__(self) -> None:
-        """Raises ParameterError for a value that makes no sense."""
+        """Raises ParameterError for an invalid value."""
         self.values = read_parameters(self.entries, f"~{self.NAME}/")
         self.change(self.values)
         self._server = (serve_changes(self.entries, self.values, self.change, self.NAME)
@@ -62,15 +62,15 @@ class Plugin:
 
     @property
     def entries(self) -> list[Parameter]:
-        """Of its table."""
+        """The entries of its table."""
         return table(self.TABLE)
 
     def change(self, values: dict[str, Any]) -> None:
-        """Takes all values, at the beginning and after each change; may raise ParameterError."""
+        """Takes all values, at the start and after each change; may raise ParameterError."""
         self.values = values
 
     def close(self) -> None:
-        """Another takes its place."""
+        """Ends it: another takes its place."""
         if self._server is not None:
             self._server.set_service.shutdown()
             self._server.descr_topic.unregister()

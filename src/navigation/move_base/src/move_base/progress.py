@@ -1,7 +1,7 @@
-"""Whether the robot gets nearer to its goal. A velocity can always be found for turning to and fro.
+"""Checks whether the robot gets nearer to its goal, rather than just turning back and forth.
 
-For `progress_timeout`. Upstream calls every velocity a success, and with oscillation_timeout 0 a
-robot that cannot get quite to its goal stays before it for ever.
+For `progress_timeout`. Upstream counts every velocity as success, so with oscillation_timeout 0 a
+robot that cannot quite reach its goal stays in front of it for ever.
 """
 
 from __future__ import annotations
@@ -13,25 +13,25 @@ import numpy as np
 from nav_algorithms.local_planning.following import Following
 from nav_algorithms.poses import wrap_angle
 
-NEARER = 0.05   # m of way
+NEARER = 0.05   # m along the path
 TURNED = 0.3    # rad, towards the goal's yaw
-BESIDE = 0.3    # m of way from where on turning counts
-DETOUR = 0.25   # m by which the way became longer: something was seen, and that is no failure
+BESIDE = 0.3    # m of path left, below which turning counts
+DETOUR = 0.25   # m by which the path became longer: an obstacle was seen, which is no failure
 
 
 class Progress:
-    """On the way to one goal. Poses (3,) and paths (N, 3) are in one fixed frame."""
+    """Progress to one goal. Poses (3,) and paths (N, 3) are in one fixed frame."""
 
     def __init__(self) -> None:
         self.begin()
 
     def begin(self) -> None:
-        """A new goal."""
+        """Begin a new goal."""
         self._following: Following | None = None
         self._way = self._turn = math.inf
 
     def take(self, path: np.ndarray) -> None:
-        """The path that is followed from now on. Raises ValueError for what is no path."""
+        """The path that is followed from now on. Raises ValueError if it is not a valid path."""
         self._following = Following(path)
 
     def is_nearer(self, pose: np.ndarray) -> bool:

@@ -1,6 +1,6 @@
-"""What can be tried where no plan or no velocity is found: upstream's behaviours, and one of ours.
+"""Recovery behaviours for when no plan or no velocity is found: upstream's, and one of ours.
 
-Each is done in steps, one a period of the control loop, so that goals can be cancelled meanwhile.
+Each runs in steps, one per period of the control loop, so that goals can be cancelled meanwhile.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.poses import wrap_angle
 from nav_nodes.parameters import Parameter, read_parameters
 
-LIMITS = "TrajectoryPlannerROS"  # where upstream's rotate_recovery looks for its speeds
-TOO_LONG = 2.0  # times what a drive should take, until it is given up
+LIMITS = "TrajectoryPlannerROS"  # namespace in which upstream's rotate_recovery reads its speeds
+TOO_LONG = 2.0  # multiple of a drive's expected time after which it is given up
 
 
 @dataclass(frozen=True)
 class Rig:
-    """What behaviours work with. `frequency`: of their steps, Hz."""
+    """The parts that behaviours use. `frequency`: of their steps, Hz."""
 
     global_costmap: CostmapROS
     local_costmap: CostmapROS
@@ -40,22 +40,22 @@ class Recovery(ABC):
     TABLE = ""
 
     def __init__(self, name: str) -> None:
-        """Raises ParameterError for a value that makes no sense."""
+        """Raises ParameterError for an invalid value."""
         self.name = name
         self.values: dict[str, Any] = read_parameters(self.entries, f"~{name}/")
 
     @property
     def entries(self) -> list[Parameter]:
-        """What it reads below its own name."""
+        """The parameters that it reads below its own name."""
         return table(self.TABLE)
 
     def start(self, rig: Rig) -> None:
-        """Begins; the robot stands."""
+        """Begin; the robot stands."""
         self.rig = rig
 
     @abstractmethod
     def step(self) -> bool:
-        """Does a little; whether it is done. Called only while the robot can see."""
+        """Do one step; returns whether it is done. Called only while sensor data is current."""
 
 
 class ClearCostmap(Recovery):
@@ -184,10 +184,10 @@ DEFAULT_OF_A_CAR = (("conservative_reset", ClearCostmap), ("escape", Escape),
 
 
 def load(values: dict[str, Any], circumscribed_radius: float) -> list[Recovery]:
-    """The behaviours of `~recovery_behaviors`, or the usual ones; `values` are move_base's.
+    """The behaviours of `~recovery_behaviors`, or the default ones; `values` are move_base's.
 
-    A car cannot turn on the spot: its usual ones have Escape in that place. Raises ParameterError
-    for parameters of theirs that make no sense, and for types that there are not.
+    A car cannot turn on the spot: its default ones have Escape instead. Raises ParameterError for
+    invalid parameters of theirs and for unknown types.
     """
     where = rospy.resolve_name("~recovery_behaviors")
     wanted = values["recovery_behaviors"]
@@ -202,7 +202,7 @@ def load(values: dict[str, Any], circumscribed_radius: float) -> list[Recovery]:
 
 
 def _is_list_of_behaviours(wanted: list) -> bool:
-    """Else one line in upstream's words."""
+    """Whether the list is valid; if not, logs a line in upstream's words."""
     names = [entry.get("name") for entry in wanted
              if isinstance(entry, dict) and isinstance(entry.get("type"), str)
              and isinstance(entry.get("name"), str)]

@@ -1,4 +1,4 @@
-"""The services of move_base beside its action."""
+"""The services of move_base, besides its action."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from move_base.goals import in_frame
 from nav_algorithms.costmap.costs import FREE, INSCRIBED, UNKNOWN, Costmap
 from nav_nodes.transforms import Transforms
 
-STEP_CELLS = 3  # between two places that are tried in place of the goal
+STEP_CELLS = 3  # between two alternative goal positions that are tried
 
 
 class Services:
@@ -49,13 +49,13 @@ class Services:
         return EmptyResponse()
 
     def _clear_unknown_space(self, _request: EmptyRequest) -> EmptyResponse:
-        """Older upstream's: where the robot stands it is known, until ~clear_costmaps."""
+        """As in older upstream: space around the robot counts as known, until ~clear_costmaps."""
         pose = self._costmaps[0].robot_pose()
         self._known = [*self._known, *([] if pose is None else [pose])]
         return EmptyResponse()
 
     def _make_plan(self, request: GetPlanRequest) -> GetPlanResponse | None:
-        """An empty plan where there is no way, as upstream; the call fails where it cannot try."""
+        """An empty plan if there is no path, as upstream; the call fails if it cannot plan."""
         costmap = self._costmaps[0]
         if self._is_active():
             return _refused("move_base must be in an inactive state to make a plan for an "
@@ -91,11 +91,11 @@ class Services:
         path = self._planner().plan(snapshot, footprint, start, goal, frame)
         if path is not None:
             return path
-        widest = max(snapshot.cells.shape) * snapshot.resolution  # nothing is open beyond it
+        widest = max(snapshot.cells.shape) * snapshot.resolution  # beyond it nothing is free
         for offset in offsets(min(tolerance, widest), snapshot.resolution):
             place = goal + np.array([*offset, 0.0])
             if not _is_open(snapshot, place):
-                continue  # no planner would find a way to it
+                continue  # no planner would find a path to it
             path = self._planner().plan(snapshot, footprint, start, place, frame)
             if path is not None:
                 add = self._values()["make_plan_add_unreachable_goal"]

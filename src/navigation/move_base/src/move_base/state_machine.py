@@ -1,4 +1,4 @@
-"""What move_base does next: plan, drive, or try to recover; upstream's rules, without ROS.
+"""Decides what move_base does next: plan, drive, or recover; upstream's rules, without ROS.
 
 Times are seconds of one clock that the caller reads. All methods may be called on any thread.
 """
@@ -14,7 +14,7 @@ GOAL_REACHED = "Goal reached."
 
 
 class State(Enum):
-    """What the robot waits for or does."""
+    """What the robot is doing or waiting for."""
 
     PLANNING = "planning"
     CONTROLLING = "controlling"
@@ -22,7 +22,7 @@ class State(Enum):
 
 
 class Trigger(Enum):
-    """Why recovery was begun; the value is the terminal text where nothing helped."""
+    """Why recovery was begun; the value is the action's terminal text if nothing helped."""
 
     PLANNING = "Failed to find a valid plan. Even after executing recovery behaviors."
     CONTROLLING = "Failed to find a valid control. Even after executing recovery behaviors."
@@ -31,9 +31,9 @@ class Trigger(Enum):
 
 @dataclass(frozen=True)
 class Patience:
-    """Names of move_base; s, m. A negative number of retries is no limit.
+    """move_base's parameters of these names; s, m. A negative number of retries means no limit.
 
-    `progress_timeout` is ours; 0 is none, as upstream.
+    `progress_timeout` is ours; 0 means none, as in upstream.
     """
 
     planner_frequency: float
@@ -49,7 +49,7 @@ class Patience:
 class StateMachine:
     """One goal at a time. `wants_plan` tells the planner to plan, `state` the driver what to do.
 
-    What upstream calls recovery_index_ is `recovery`: which behaviour is the next to be tried.
+    `recovery`, upstream's recovery_index_, is the index of the behaviour to try next.
     """
 
     def __init__(self, patience: Patience, recoveries: int = 0) -> None:
@@ -66,7 +66,7 @@ class StateMachine:
         self._last_plan = self._last_control = self._last_moved = self._last_nearer = 0.0
 
     def begin(self, now: float) -> int:
-        """A new goal, maybe in place of another; the number by which its plans are known."""
+        """Begin a new goal, which may replace another; returns the number that marks its plans."""
         with self._lock:
             self._reset()
             self._goal += 1
@@ -75,7 +75,7 @@ class StateMachine:
             return self._goal
 
     def end(self) -> None:
-        """No goal any more: plans that still come are for nothing."""
+        """End the goal: plans that still come are ignored."""
         with self._lock:
             self._reset()
             self._goal += 1
@@ -85,12 +85,12 @@ class StateMachine:
         return goal == self._goal
 
     def hold(self, now: float) -> None:
-        """Patience begins anew: the robot cannot see, or time went back."""
+        """Restart all timeouts: sensor data is missing, or time went back."""
         with self._lock:
             self._last_plan = self._last_control = self._last_moved = self._last_nearer = now
 
     def at(self, x: float, y: float, now: float) -> None:
-        """Where the robot is, m: as long as it gets about, it does not oscillate."""
+        """Take the robot's position, m: while it moves far enough, it does not oscillate."""
         with self._lock:
             moved = (math.inf if self._moved_from is None
                      else math.hypot(x - self._moved_from[0], y - self._moved_from[1]))
@@ -100,7 +100,7 @@ class StateMachine:
                     self.recovery = 0
 
     def planned(self, goal: int, found: bool, now: float) -> None:
-        """The planner's answer for the goal of that number."""
+        """Take the planner's result for the goal of that number."""
         with self._lock:
             if not self.is_for(goal) or not self.wants_plan:
                 return
@@ -116,13 +116,13 @@ class StateMachine:
                     self._clear(Trigger.PLANNING)
 
     def took_path(self) -> None:
-        """The driver follows a new path, so what was wrong with planning is over."""
+        """The driver follows a new path, so a planning problem is over."""
         with self._lock:
             if self.trigger is Trigger.PLANNING:
                 self.recovery = 0
 
     def oscillates(self, now: float) -> bool:
-        """While driving: whether the robot got nowhere for too long; then it must recover."""
+        """While driving: whether the robot got nowhere for too long, and now must recover."""
         with self._lock:
             limit = self.patience.oscillation_timeout
             if not 0.0 < limit < now - self._last_moved:
@@ -131,7 +131,7 @@ class StateMachine:
             return True
 
     def controlled(self, found: bool, nearer: bool, now: float) -> None:
-        """Whether the local planner had a velocity, and the robot has come nearer to its goal."""
+        """Take whether the local planner found a velocity, and whether the robot came nearer."""
         with self._lock:
             patience = self.patience.controller_patience
             if nearer:
@@ -148,13 +148,13 @@ class StateMachine:
                 self._plan_again(now)
 
     def failure(self) -> str | None:
-        """While clearing: the terminal text, if no behaviour is left to try."""
+        """While clearing: the action's terminal text, if no behaviour is left to try."""
         with self._lock:
             left = self.patience.recovery_behavior_enabled and self.recovery < self.recoveries
             return None if left else self.trigger.value
 
     def recovered(self, now: float) -> None:
-        """A behaviour has ended; planning shows whether it helped."""
+        """A behaviour has ended; planning will show whether it helped."""
         with self._lock:
             self._last_moved = self._last_nearer = now
             self.recovery += 1
@@ -165,5 +165,5 @@ class StateMachine:
         self.state, self.wants_plan = State.PLANNING, True
 
     def _clear(self, trigger: Trigger) -> None:
-        """Planning rests: upstream's goes on, and a plan then may cut recovery short."""
+        """Planning pauses; in upstream it goes on, and a plan may cut recovery short."""
         self.state, self.trigger, self.wants_plan = State.CLEARING, trigger, False

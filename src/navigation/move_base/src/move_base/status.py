@@ -1,4 +1,4 @@
-"""The action's status, five times a second, also after the clock was set back."""
+"""Publishes the action's status, five times a second, also after the clock was set back."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import rospy
 
 
 def keep_telling(server: actionlib.SimpleActionServer) -> None:
-    """Call once, after its start: actionlib's own timer ends when the clock goes back."""
+    """Call once, after the server's start: actionlib's own timer ends when the clock goes back."""
     actions = server.action_server
     if actions.status_timer is not None:
         actions.status_timer.shutdown()

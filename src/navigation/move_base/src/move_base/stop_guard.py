@@ -1,8 +1,8 @@
-"""The process that stops the robot when move_base is gone, however it went.
+"""The process that stops the robot when move_base has ended, for whatever reason.
 
-The simulated drives, as upstream's and as many real ones, keep the last velocity that they were
-told; a killed node cannot take it back. This process holds the other end of a pipe: a line says
-whether the robot is being driven, and when the pipe ends while it is, zero is published.
+The simulated drives, like upstream's and many real ones, keep the last commanded velocity; a killed
+node cannot cancel it. This process holds the other end of a pipe: each line says whether the robot
+is being driven, and if the pipe closes while it is, zero velocity is published.
 
     python3 -m move_base.stop_guard twist /cmd_vel __name:=move_base_stop_guard
 """
@@ -19,14 +19,14 @@ from geometry_msgs.msg import Twist
 
 MESSAGES = {"twist": Twist, "ackermann": AckermannDriveStamped}
 DRIVEN, STANDING = "driven\n", "standing\n"
-AGAIN = 0.05  # s of wall time between two zeros
-ZEROS = 8     # in case that another node of the same name drove a last time meanwhile
+AGAIN = 0.05  # s of wall time between two zero commands
+ZEROS = 8     # several, in case another node of the same name sends a last command
 
 
 def main() -> None:
-    """Until the standard input ends."""
+    """Runs until standard input ends."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, signal.SIG_IGN)  # it ends with move_base, and after it
+        signal.signal(number, signal.SIG_IGN)  # it ends by itself, after move_base
     arguments = rospy.myargv()
     kind = MESSAGES[arguments[1]]
     rospy.init_node("move_base_stop_guard", disable_signals=True, disable_rostime=True)

@@ -1,4 +1,4 @@
-"""Whether the robot knows enough to drive, and if not one line that says what is missing."""
+"""Checks whether the data needed to drive is there, and logs one line on what is missing."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from move_base.base import Base
 from nav_nodes.complaints import Complaints
 
 STANDS = "the robot stands until it is there again"
-PAUSE = 1.0  # s between two looks; after a longer one, e.g. between goals, what was seen is old
+PAUSE = 1.0  # s between two checks; after a longer one, e.g. between goals, old data is dropped
 
 
 @dataclass
 class _Seen:
-    """The newest stamp of the localisation, and when it was there first and was looked at last."""
+    """The localisation's newest stamp, when it was first seen, and when it was last checked."""
 
     stamp: rospy.Time
     since: float
@@ -26,7 +26,7 @@ class _Seen:
 
 
 class Watch:
-    """Looks at costmaps, sensors, transforms and odometry. One thread calls it."""
+    """Checks costmaps, sensors, transforms and odometry. Called by one thread."""
 
     def __init__(self, costmaps: tuple[CostmapROS, CostmapROS], base: Base,
                  buffer: tf2_ros.Buffer, complaints: Complaints) -> None:
@@ -37,14 +37,14 @@ class Watch:
         self._orphaned: set[str] = set()
 
     def can_drive(self, now: float, timeout: float, map_required: bool) -> bool:
-        """Whether all is there at `now`, s of ROS time; older than `timeout`, s, is missing.
+        """Whether all is there at `now`, s of ROS time; data older than `timeout`, s, is missing.
 
-        With `map_required` so is a map whose publisher has gone.
+        With `map_required`, so is a map whose publisher has gone.
 
-        A timeout of 0 asks, as upstream, only for costmaps, poses and what an
-        `expected_update_rate` was set for, and that no odometry was refused.
+        With a timeout of 0 it requires, as upstream, only costmaps, poses and sensors that have an
+        `expected_update_rate`, and that no odometry was refused.
         """
-        poses = [costmap.robot_pose() for costmap in self._costmaps]  # both, for what they say
+        poses = [costmap.robot_pose() for costmap in self._costmaps]  # both, so that both complain
         located = all(pose is not None for pose in poses)
         return ((self._all_speak(now, timeout, located) if timeout > 0.0
                  else self._odometry_can_be()) and located
@@ -53,15 +53,15 @@ class Watch:
                 and self._sensors_are_current())
 
     def _all_speak(self, now: float, timeout: float, located: bool) -> bool:
-        """Sensors, odometry and localisation; each that does not is complained about.
+        """Whether sensors, odometry and localisation are alive; logs each that is not.
 
-        Without odometry there is no localisation either, and only the first is to blame.
+        Without odometry there is no localisation either, and only odometry is named.
         """
         return all([self._sensors_speak(timeout), self._odometry_speaks(now, timeout),
                     not located or self._is_localised(now, timeout)])
 
     def _miss_maps(self) -> bool:
-        """Each that nobody publishes is complained about."""
+        """Whether a map has no publisher; logs each such map."""
         orphaned = {topic for costmap in self._costmaps for topic in costmap.orphaned_maps()}
         for topic in self._orphaned | orphaned:
             self._say(f"publisher of the map on {topic}", topic in orphaned)
@@ -78,10 +78,10 @@ class Watch:
 
     def _sensors_speak(self, timeout: float) -> bool:
         speaking = [self._speaks(news, timeout) for news in self._costmaps[1].news()]
-        return all(speaking)  # of each that does not it is said
+        return all(speaking)  # a list, so that each silent one is logged
 
     def _speaks(self, news: News, timeout: float) -> bool:
-        """Whether a sensor says what can be used. A missing transform has a line of its own."""
+        """Whether a sensor sends usable data. A missing transform is logged separately."""
         silent = abs(news.heard) > timeout  # below 0: heard before the clock was set back
         useless = not silent and abs(news.placed) > timeout
         self._say(news.what, silent)
@@ -101,16 +101,16 @@ class Watch:
         return not fault
 
     def _is_localised(self, now: float, timeout: float) -> bool:
-        """Whether the place of the odometry's frame in the map's is still being told."""
+        """Whether the transform from map to odometry frame is still being published."""
         parent, child = (costmap.global_frame for costmap in self._costmaps)
         if parent == child:
             return True
         try:
             stamp = self._buffer.lookup_transform(parent, child, rospy.Time(0)).header.stamp
         except tf2_ros.TransformException:
-            return False  # the costmaps complain
+            return False  # the costmaps log it
         if stamp.is_zero():
-            return True  # of a static transform
+            return True  # it is a static transform
         if self._seen is None or now - self._seen.looked > PAUSE or stamp != self._seen.stamp:
             self._seen = _Seen(stamp, now, now)
         self._seen.looked = now

@@ -1,1 +1,1 @@
-"""What the navigation nodes share; each of them is thin, and nav_algorithms knows no ROS."""
+"""Shared by the navigation nodes, which are thin layers over nav_algorithms, which needs no ROS."""

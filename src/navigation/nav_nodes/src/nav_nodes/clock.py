@@ -1,4 +1,4 @@
-"""The simulated clock: one line while it does not run, and no other line meanwhile."""
+"""The simulated clock: while it does not run, one line is logged about that, and no other."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from nav_nodes.complaints import Complaints
 from nav_nodes.silence import is_published
 
 CLOCK = "simulated clock /clock"
-LOOK = 0.25   # s of wall time between two looks
-STILL = 1.0   # s of wall time, until it is asked whether anybody publishes it any more
+LOOK = 0.25   # s of wall time between two checks
+STILL = 1.0   # s of wall time without a tick until its publishers are checked
 
 
 def watch(complaints: Complaints) -> None:
-    """From now on, on a thread, if /use_sim_time is true. A paused simulation is no fault."""
+    """Start a watching thread, if /use_sim_time is true. A paused simulation is not a fault."""
     if not rospy.rostime.is_wallclock():
         threading.Thread(target=_watch, args=(complaints,), daemon=True).start()
 
 
 def wait_until_it_runs(complaints: Complaints) -> bool:
-    """Until time is not 0, where a message's stamp must not be; false on the way out."""
+    """Wait until time is not 0, which no message's stamp may be; False at shutdown."""
     watch(complaints)
     while rospy.Time.now().is_zero() and not rospy.is_shutdown():
         time.sleep(LOOK / 5)

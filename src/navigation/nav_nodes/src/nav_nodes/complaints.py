@@ -1,4 +1,4 @@
-"""Lines that say what is missing and for how long: one for all of it, at most every 5 s."""
+"""Logs what is missing and for how long: one line for all of it, at most every 5 s."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import rospy
 
-INTERVAL = 5.0    # s of wall time between two lines about the same
-GATHERING = 0.3   # s that a first line waits for what is missing for the same reason
-SOON = 3.0        # s between a cause and its result
-RECENT = 2.0      # s since somebody missed it, for it to be said
-FORGOTTEN = 12.0  # s after which what nobody missed any more is missing anew
+INTERVAL = 5.0    # s of wall time between two lines about the same absence
+GATHERING = 0.3   # s that a first line waits for others that are missing for the same reason
+SOON = 3.0        # s, at most, between a root cause and its result
+RECENT = 2.0      # s since the last report, within which an absence is logged
+FORGOTTEN = 12.0  # s without reports, after which a report begins a new absence
 
 
 @dataclass
@@ -27,13 +27,13 @@ class _Absence:
 
 
 class Complaints:
-    """Remembers since when each thing has been missing. One a node; safe on any thread.
+    """Records since when each item has been missing. One per node; thread-safe.
 
-    Wall time, because a simulated clock that stands still is one of the things that can be missing.
+    Uses wall time, because a running simulated clock is one of the items that can be missing.
     """
 
     def __init__(self, patience: float = 1.0) -> None:
-        """Nothing is said in the first `patience` s of an absence."""
+        """Nothing is logged in the first `patience` s of an absence."""
         self._patience = patience
         self._lock = threading.Lock()
         self._absent: dict[str, _Absence] = {}
@@ -41,12 +41,12 @@ class Complaints:
     def missing(self, what: str, advice: str = "", patience: float | None = None,
                 since: float | None = None, is_root: bool = False,
                 is_result: bool = False) -> None:
-        """`what` ("laser scans on /scan") is still missing; call as often as that is noticed.
+        """Report that `what` ("laser scans on /scan") is still missing; call whenever noticed.
 
-        Of several who miss it the least patient one's `advice` is said. `since`: of
-        time.monotonic, if that was before the first call. While something is missing that
-        `is_root`, nothing else is said: it follows from that. What `is_result` is not said while
-        something else is missing since about then, however patient one is with that.
+        If several callers miss it, the `advice` of the one with the least patience is logged.
+        `since` (time.monotonic): set if earlier than the first call. While an item with `is_root`
+        is missing, nothing else is logged: it follows from that. An item with `is_result` is not
+        logged while another has been missing since about then, whatever its patience.
         """
         now = time.monotonic()
         patience = self._patience if patience is None else patience
@@ -63,14 +63,14 @@ class Complaints:
             rospy.logwarn("%s", line)
 
     def present(self, what: str) -> None:
-        """It is there: the next absence begins anew."""
+        """Report that `what` is there, which ends its absence."""
         with self._lock:
             entry = self._absent.pop(what, None)
         if entry is not None and entry.said is not None:
             rospy.loginfo("%s: there again", what)
 
     def _line(self, now: float) -> str:
-        """What is to be said now; what was never said does not wait for the rest."""
+        """The line to log now, or ""; a new absence does not wait for the INTERVAL of others."""
         missed = {what: entry for what, entry in self._absent.items() if now - entry.seen <= RECENT}
         causes = [entry.since for entry in missed.values()
                   if not entry.is_result and now - entry.since >= self._patience]

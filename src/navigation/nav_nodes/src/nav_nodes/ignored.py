@@ -1,4 +1,4 @@
-"""One warning of a node that names the parameters which were set and have no effect."""
+"""One warning per node that names parameters which are set but have no effect."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ import rospy
 
 from nav_nodes.parameters import Parameter
 
-Tables = Mapping[str, Iterable[Parameter]]  # by their namespace below the node's: "", "a/b"
+Tables = Mapping[str, Iterable[Parameter]]  # by namespace below the node's: "", "a/b"
 
 
 def below(name: str, tables: Tables) -> dict[str, Iterable[Parameter]]:
-    """The same tables for a namespace around theirs."""
+    """The tables with `name` prepended to their namespaces."""
     return {f"{name}/{space}".rstrip("/"): table for space, table in tables.items()}
 
 
 def warn_of_ignored(tables: Tables, others: Iterable[str] = ()) -> None:
-    """Looks at what is set below the node's own name; `others` are names without a table."""
+    """Checks the parameters below the node's name; `others` are allowed names without a table."""
     found = list(ignored(rospy.get_param("~", {}), tables, others))
     if found:
         rospy.logwarn("%s: parameters without effect: %s", rospy.get_name(), "; ".join(found))
 
 
 def ignored(tree: Mapping[str, Any], tables: Tables, others: Iterable[str] = ()) -> Iterator[str]:
-    """Each name of the `tree` that no table reads, or that is read but changes nothing.
+    """Yields each name in `tree` that no table reads, or that is read but has no effect.
 
-    A folder of settings that no table is for belongs to a planner that is not in use, and is passed
-    over, unless its name nearly is one in use.
+    A namespace without a table belongs to a planner that is not in use, and is ignored, unless its
+    name is similar to one in use.
     """
     known = {"": [], **tables}
     for space in list(tables):
@@ -59,7 +59,7 @@ def _below(tree: Mapping[str, Any], space: str, tables: Tables, others: set[str]
 
 
 def _useless(path: str, value: Any, entry: Parameter) -> Iterator[str]:
-    """With the default's value nobody misses anything."""
+    """A line for a parameter without effect, unless it has its default value."""
     if entry.status != "works" and value != entry.default:
         what = "has another meaning: " if entry.status == "differs" else ""
         yield f"{path} ({what}{entry.meaning})"

@@ -1,4 +1,4 @@
-"""Which one of the transforms between two frames is missing or late, by what tf2 knows of all."""
+"""Finds which transform between two frames is missing or late, from tf2's list of all frames."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from dataclasses import dataclass
 
 import tf2_py
 
-# Of one frame; read like this because a YAML reader takes 5 ms for a robot's, some 50 times a s.
+# One frame's entry; a YAML parser takes 5 ms for a robot's, and is needed some 50 times a second.
 FRAME = re.compile(r"^(\S+): ?\n  parent: '(.*)'\n(?:  .*\n)*?  most_recent_transform: (.*)\n",
                    re.MULTILINE)
-TOGETHER = 0.25  # s; without odometry there is soon no localisation, and that is not to blame
+TOGETHER = 0.25  # s; localisation that ends this soon after odometry is not to blame
 
 
 @dataclass(frozen=True)
 class Link:
-    """The transform from `parent` to `child`; `newest`: its stamp, s, 0 of a static one.
+    """The transform from `parent` to `child`; `newest`: its stamp, s; 0: a static one.
 
-    None where there never was one.
+    None if there never was one.
     """
 
     parent: str
@@ -26,21 +26,21 @@ class Link:
 
 
 def known_links(buffer: tf2_py.BufferCore) -> dict[str, Link]:
-    """By the child's name."""
+    """Links by the child's name."""
     return {child: Link(parent, child, float(newest))
             for child, parent, newest in FRAME.findall(buffer.all_frames_as_yaml())}
 
 
 def weakest(links: dict[str, Link], parent: str, child: str, chain: tuple[str, ...] = ()) -> Link:
-    """What is to blame where the transform from `parent` to `child` is not to be had.
+    """The link to blame if the transform from `parent` to `child` is not available.
 
-    A missing one, else the oldest, or what ended with it farther down. `chain` are the names of
-    frames of which each should be known in the one before, such as ("map", "odom", "base_link").
+    A missing one, else the oldest, or one farther down that ended with it. `chain`: frames' names,
+    each of which should be known in the previous one, such as ("map", "odom", "base_link").
     """
     above, below = _ancestors(links, parent), _ancestors(links, child)
     shared = next((frame for frame in below if frame in above), None)
     if shared is None:
-        if parent in chain[1:] and chain[chain.index(parent) - 1] in below:  # passes it by
+        if parent in chain[1:] and chain[chain.index(parent) - 1] in below:  # the chain is bypassed
             return Link(chain[chain.index(parent) - 1], parent, None)
         return _missing(below[-1], parent, child, chain)
     between = [links[frame] for branch in (below, above)
@@ -53,9 +53,9 @@ def weakest(links: dict[str, Link], parent: str, child: str, chain: tuple[str, .
 
 
 def _missing(root: str, parent: str, child: str, chain: tuple[str, ...]) -> Link:
-    """Nothing says where `root` is, the frame that all leads to from `child`.
+    """The missing link above `root`, the topmost known ancestor of `child`.
 
-    What is not in the chain is taken for a part of the robot, whose frame is the chain's last.
+    A frame outside the chain counts as part of the robot, whose frame is the chain's last.
     """
     named = root if root in chain[1:] else child
     if named in chain[1:]:
@@ -66,7 +66,7 @@ def _missing(root: str, parent: str, child: str, chain: tuple[str, ...]) -> Link
 
 
 def _ancestors(links: dict[str, Link], frame: str) -> list[str]:
-    """The frame itself first."""
+    """The frame itself, then its ancestors."""
     found = [frame]
     while found[-1] in links and links[found[-1]].parent not in found:
         found.append(links[found[-1]].parent)

@@ -1,4 +1,4 @@
-"""Between messages and nav_algorithms' arrays."""
+"""Converts between messages and nav_algorithms' arrays."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from nav_algorithms.grid import OccupancyGrid
 
 
 def yaw_of(q: Quaternion) -> float:
-    """Yaw, rad, of a quaternion message that need not be of length 1."""
+    """Yaw, rad, of a quaternion message, which need not be normalised."""
     return math.atan2(2.0 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z)
 
 
 def quaternion_of(yaw: float) -> Quaternion:
-    """A turn about z, as a message."""
+    """A rotation about z as a message."""
     return Quaternion(0.0, 0.0, math.sin(yaw / 2), math.cos(yaw / 2))
 
 
 def is_valid(q: Quaternion) -> bool:
-    """Neither nearly 0 nor huge, and not tipping the robot by more than a degree."""
+    """Whether its norm is neither nearly 0 nor huge, and it tilts by at most about a degree."""
     length = math.hypot(q.x, q.y, q.z, q.w)
     if not 1e-6 <= length <= 1e6:
         return False
@@ -65,7 +65,7 @@ def transform_message(pose: np.ndarray, parent: str, child: str,
 def grid_message(grid: OccupancyGrid, frame: str, stamp: rospy.Time) -> OccupancyGridMessage:
     """nav_msgs/OccupancyGrid of a grid.
 
-    Its data is an array, and it is of the subclass that packs arrays fifty times as fast.
+    Its data is an array, and its class serialises arrays fifty times as fast.
     """
     message = numpy_msg(OccupancyGridMessage)()
     message.header.frame_id, message.header.stamp = frame, stamp
@@ -79,7 +79,7 @@ def grid_message(grid: OccupancyGrid, frame: str, stamp: rospy.Time) -> Occupanc
 
 
 class MapAnswer(GetMapResponse):
-    """nav_msgs/GetMap's, of a message from `grid_message`; packed thirty times as fast."""
+    """Response of nav_msgs/GetMap with a `grid_message`; serialised thirty times as fast."""
 
     def serialize(self, buff: BytesIO) -> None:
         """The same bytes."""
@@ -87,7 +87,7 @@ class MapAnswer(GetMapResponse):
 
 
 class LoadedMapAnswer(LoadMapResponse):
-    """nav_msgs/LoadMap's, of a message from `grid_message`; packed thirty times as fast."""
+    """Response of nav_msgs/LoadMap with a `grid_message`; serialised thirty times as fast."""
 
     def serialize(self, buff: BytesIO) -> None:
         """The same bytes."""
@@ -96,7 +96,7 @@ class LoadedMapAnswer(LoadMapResponse):
 
 
 def grid_of(message: OccupancyGridMessage) -> OccupancyGrid:
-    """The grid in a message; raises ValueError with what is wrong with it."""
+    """The grid in a message; raises ValueError that says what is wrong."""
     info = message.info
     cells = np.asarray(message.data, np.int8)
     if cells.size != info.height * info.width or not cells.size:

@@ -1,4 +1,4 @@
-"""How lasers sit on the robot."""
+"""How lasers are mounted on the robot."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from geometry_msgs.msg import Transform
 from nav_nodes.complaints import Complaints
 from nav_nodes.transforms import Transforms
 
-LEVEL = 0.02  # how much of a laser's upward axis may lean away from the vertical: about 11 degrees
+LEVEL = 0.02  # largest 1 - |cosine| of a laser's tilt: about 11 degrees
 
 
 @dataclass(frozen=True)
 class Mount:
-    """`pose` (x, y, yaw) of the laser in the robot's frame; upside down its angles run back."""
+    """`pose` (x, y, yaw) of the laser in the robot's frame; upside down, angles are reversed."""
 
     pose: np.ndarray
     upside_down: bool
@@ -32,7 +32,7 @@ class Mount:
 
 
 class Mounts:
-    """Of all lasers of one robot, each looked up once, because it is screwed on."""
+    """Mounts of all lasers of one robot; each is fixed, so it is looked up once."""
 
     def __init__(self, base: str, transforms: Transforms, complaints: Complaints) -> None:
         """`base`: name of the robot's frame."""
@@ -40,7 +40,7 @@ class Mounts:
         self._known: dict[str, Mount] = {}
 
     def of(self, laser: str) -> Mount | None:
-        """By the name of its frame; None, with a line, while it is not known or tilted."""
+        """A laser's mount, by its frame's name; None, with a logged line, if unknown or tilted."""
         laser = laser.lstrip("/")
         if laser in self._known:
             return self._known[laser]

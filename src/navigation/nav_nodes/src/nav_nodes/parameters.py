@@ -1,10 +1,10 @@
-"""A node's parameters as a table in a YAML file: read once, checked, and changed while it runs.
+"""A node's parameters by a table in a YAML file: read once, checked, changed at run time.
 
-A table is a list of entries with `name`, `type` (bool, int, double, str, list), `default`, and if
-wanted `min`, `max` (numbers), `choices` (str), `also` (names that upstream reads as well, where
-`name` is not set), `was` (older names that are not read), `change` (true: offered by
-dynamic_reconfigure), `status` (works; accepted: no effect; differs: means something else than
-upstream's), `ours` (true: upstream has none, and the default is what upstream does) and `meaning`.
+A table is a list of entries with `name`, `type` (bool, int, double, str, list), `default`,
+`meaning`, and optionally `min`, `max` (numbers), `choices` (str), `also` (names that upstream also
+reads, if `name` is not set), `was` (older names that are not read), `change` (true: offered by
+dynamic_reconfigure), `status` (works; accepted: no effect; differs: has another meaning than in
+upstream), `ours` (true: not in upstream, and the default does what upstream does).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ KINDS = {"bool": bool, "int": int, "double": float, "str": str, "list": list}
 
 
 class ParameterError(ValueError):
-    """A parameter that makes no sense; the text names it, its value, and what it may be."""
+    """An invalid parameter; the text names it, its value, and what is allowed."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,8 @@ class Parameter:
         if kind is float and type(value) is int and abs(value) < 1e300:
             value = float(value)
         if kind is int and isinstance(value, float) and value.is_integer():
-            value = int(value)  # roscpp takes 20.0 for 20, too
-        if kind is str and isinstance(value, list):  # [[0.1, 0.1], ...]: text to upstream
+            value = int(value)  # roscpp accepts 20.0 for 20, too
+        if kind is str and isinstance(value, list):  # [[0.1, 0.1], ...]: a string in upstream
             value = yaml.safe_dump(value, default_flow_style=True, width=math.inf).strip()
         if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
             raise ParameterError(f"{where} is {shown}, but must be of type {self.type}")
@@ -69,7 +69,7 @@ class Parameter:
 
 
 def load_table(path: Path) -> list[Parameter]:
-    """The table in a file; raises ParameterError naming file and key for what it must not hold."""
+    """The table in a file; raises ParameterError that names file and key of an error."""
     known = {field.name for field in fields(Parameter)}
     table = []
     for entry in yaml.safe_load(path.read_text(encoding="utf-8")):
@@ -97,7 +97,7 @@ def read_parameters(table: list[Parameter], namespace: str = "~") -> dict[str, A
 
 
 def _name_on_server(entry: Parameter, namespace: str) -> str:
-    """Its own name, or another of its names that is set while that is not."""
+    """The entry's name, or one of its `also` names that is set while that is not."""
     names = [rospy.resolve_name(namespace + name) for name in (entry.name, *entry.also)]
     return next((name for name in names[1:] if rospy.has_param(name)
                  and not rospy.has_param(names[0])), names[0])
@@ -108,9 +108,9 @@ def serve_changes(table: list[Parameter], values: dict[str, Any],
                   namespace: str = "") -> Server:
     """Offer the changeable entries by dynamic_reconfigure below `~namespace`.
 
-    `apply` gets all values, now and after each change, on ROS's threads, and may answer with those
-    to hold instead; if it raises ParameterError that is a warning, and everything stays as it was.
-    `restore_defaults`, where it is in the table, brings back what held at the start, as upstream.
+    `apply` gets all values, now and after each change, on ROS's threads, and may return values to
+    use instead; if it raises ParameterError, that is logged as a warning and nothing changes.
+    `restore_defaults`, if in the table, restores the values from the start, as upstream.
     """
     changeable = [entry for entry in table if entry.change]
     current = dict(values)
@@ -133,10 +133,10 @@ def serve_changes(table: list[Parameter], values: dict[str, Any],
 
 
 class _QuietServer(Server):
-    """Begins from the values that were read and checked, not from the parameter server again."""
+    """Starts with the values that were read and checked, not with the parameter server's."""
 
     def _copy_from_parameter_server(self) -> None:
-        """Read already; a whole number there would turn into another type here."""
+        """Does nothing: they were read already, and integers would get another type here."""
 
 
 def _describe(changeable: list[Parameter], values: dict[str, Any]) -> SimpleNamespace:
@@ -157,7 +157,7 @@ def _describe(changeable: list[Parameter], values: dict[str, Any]) -> SimpleName
 
 
 def _bound(entry: Parameter, bound: float) -> Any:
-    """A bound in the entry's own type, as the message wants it."""
+    """A bound in the entry's own type, as the message needs it."""
     if entry.type == "bool":
         return bound > 0
     if entry.type == "str":

@@ -1,7 +1,7 @@
-"""Programs that end within a second of being told to, whatever they are doing, without a traceback.
+"""Programs that end within a second of a signal, whatever they are doing, without a traceback.
 
-A script imports nothing but this module and calls `run`: what takes long, the imports with Numba
-among them, then happens where a signal is already waited for.
+A script imports only this module and calls `run`: slow work, including imports with Numba, then
+happens while signals are already handled.
 
     run("amcl.node")  # its main()
 """
@@ -17,19 +17,19 @@ import threading
 import traceback
 from typing import NoReturn
 
-LIMIT = 0.5  # s from the signal until the process goes, even if something still hangs
+LIMIT = 0.5  # s from the signal until the process exits, even if something still hangs
 
-_told: list[int] = []         # the signals that came, the first one first
-_begun = threading.Event()    # a node is being made or is there
-_closed = threading.Event()   # its topics and services are gone from the master
+_told: list[int] = []         # the signals received, in order
+_begun = threading.Event()    # a node is being made or exists
+_closed = threading.Event()   # its topics and services are unregistered from the master
 
 
 def run(module: str) -> NoReturn:
     """Calls the module's main() and ends the process with the status that it returns (None: 0).
 
-    SIGINT and SIGTERM shut the node down, by which `spin` and all that asks rospy.is_shutdown()
-    return; then the status is still main's. Where main does not return in time, or has no node
-    yet, the status is 128 + the signal, as a shell says it of a process that was killed.
+    SIGINT and SIGTERM shut the node down, so that `spin` and loops on rospy.is_shutdown() return;
+    the status is then still main's. If main does not return in time, or has no node yet, the
+    status is 128 + the signal, as in a shell for a process that was killed.
     """
     reading, writing = os.pipe()
     os.set_blocking(writing, False)
@@ -42,7 +42,7 @@ def run(module: str) -> NoReturn:
         status = _status(importlib.import_module(module).main())
     except SystemExit as end:
         status = _status(end.code)
-    except BaseException:  # on the way out anything may be closed already
+    except BaseException:  # at exit anything may be closed already
         if not is_ending():
             traceback.print_exc()
         status = 128 + _told[0] if _told else 1
@@ -52,13 +52,13 @@ def run(module: str) -> NoReturn:
         _shut_down("the program has ended")
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
-    os._exit(status)  # Python's own end waits for threads, and a second for Numba's objects
+    os._exit(status)  # Python's own exit waits for threads, and a second for Numba's objects
 
 
 def init_node(name: str) -> None:
-    """rospy.init_node in a program that `run` runs; all imports are done.
+    """rospy.init_node in a program started by `run`, after all imports.
 
-    What they made is left out of Python's search for garbage from now on: it stays anyway.
+    Excludes the imported objects from garbage collection: they stay anyway.
     """
     import rospy
 
@@ -69,18 +69,18 @@ def init_node(name: str) -> None:
 
 
 def spin() -> None:
-    """Until the node is told to end, and has left the master."""
+    """Wait until the node has been shut down and unregistered from the master."""
     _closed.wait()
 
 
 def is_ending() -> bool:
-    """Whether the program was told to end, by a signal or by the master."""
+    """Whether a signal or the master has asked the program to end."""
     core = sys.modules.get("rospy.core")
     return bool(_told or (_begun.is_set() and core.is_shutdown_requested()))
 
 
 def _watch(reading: int) -> None:
-    """On a thread: what a signal begins. The main thread may hold any lock then."""
+    """Handles a signal, on a thread of its own, as the main thread may hold any lock."""
     _told.append(os.read(reading, 1)[0])
     if _begun.is_set():
         threading.Thread(target=_shut_down, args=[f"signal {_told[0]}"], daemon=True).start()
@@ -90,7 +90,7 @@ def _watch(reading: int) -> None:
 
 def _shut_down(reason: str) -> None:
     sys.modules["rospy"].signal_shutdown(reason)
-    _closed.set()  # also where the node was never finished
+    _closed.set()  # also if the node was never completed
 
 
 def _of_a_thread(failed: threading.ExceptHookArgs) -> None:
@@ -99,7 +99,7 @@ def _of_a_thread(failed: threading.ExceptHookArgs) -> None:
 
 
 def _status(returned: object) -> int:
-    """As sys.exit takes it."""
+    """The exit status for main's return value, as in sys.exit."""
     if returned is None or isinstance(returned, int):
         return returned or 0
     print(returned, file=sys.stderr)

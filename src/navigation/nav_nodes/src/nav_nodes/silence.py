@@ -1,4 +1,4 @@
-"""Why a topic may be silent, as far as the one who listens can tell."""
+"""Why a topic may be silent, as far as a subscriber can tell."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ import rospy
 
 from nav_nodes.complaints import Complaints
 
-QUIET = 1.0  # s of wall time without a message until that is noticed
+QUIET = 1.0  # s of wall time without a message until it is reported
 
 
 def is_published(topic: rospy.Subscriber) -> bool:
-    """Whether somebody is connected who could send.
+    """Whether a publisher is connected.
 
-    rospy counts a publisher that was killed, too: it tries for ever to reach it again.
+    rospy's own count includes killed publishers, which it tries to reconnect to for ever.
     """
     impl = topic.impl
     return impl is not None and any(link.socket is not None for link in impl.connections)
 
 
 def why_silent(topic: rospy.Subscriber, name: str) -> str:
-    """Advice for a topic that is called `name` in the node ("scan"), before remapping."""
+    """Advice for a topic whose name in the node, before remapping, is `name` ("scan")."""
     if is_published(topic):
         return "its publisher is silent, is the simulation paused?"
     return (f"nobody publishes there {topic.data_class._type} (rostopic info "
@@ -31,16 +31,16 @@ def why_silent(topic: rospy.Subscriber, name: str) -> str:
 
 
 class Silence:
-    """Notices that a topic is silent; not while a message from it is being worked on."""
+    """Notices that a topic is silent, except while a message from it is being processed."""
 
     def __init__(self, complaints: Complaints, what: str, name: str) -> None:
-        """`what` it carries ("laser scans") and what the node calls it ("scan")."""
+        """`what`: the topic's content ("laser scans"); `name`: its name in the node ("scan")."""
         self._complaints, self._what, self._name = complaints, what, name
         self._last, self._at_work = time.monotonic(), False
 
     @contextmanager
     def heard(self) -> Iterator[None]:
-        """Around the work on a message."""
+        """A context for the processing of a message."""
         self._at_work = True
         try:
             yield
@@ -48,7 +48,7 @@ class Silence:
             self._last, self._at_work = time.monotonic(), False
 
     def look(self, topic: rospy.Subscriber) -> None:
-        """Call now and then: says how long it has been silent."""
+        """Call periodically: logs how long it has been silent."""
         what = f"{self._what} on {topic.resolved_name}"
         if not self._at_work and time.monotonic() - self._last > QUIET:
             self._complaints.missing(what, why_silent(topic, self._name), since=self._last)

@@ -1,4 +1,4 @@
-"""Transforms between frames, by tf2, with one line that says which one is missing or late."""
+"""Looks up transforms by tf2, and logs one line on which one is missing or late."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ from nav_nodes.messages import yaw_of
 
 NEWEST = rospy.Time(0)
 POLL = 0.01  # s of wall time
-LATE = 0.5   # s; transforms that are older than that are late, whatever was asked for
-ODD = 3.0    # s that messages may be dated oddly before that is said
-FAR = 2.0e9  # s from now; a process in which tf2 subtracts stamps of 68 years apart is aborted
+LATE = 0.5   # s; older transforms are late, whatever stamp was requested
+ODD = 3.0    # s for which messages may have odd stamps before that is logged
+FAR = 2.0e9  # s from now; tf2 aborts the process if it subtracts stamps 68 years apart
 
 
 class Transforms:
-    """One tf2 buffer and listener a node; a lookup that fails complains and answers None.
+    """One tf2 buffer and listener per node; a lookup that fails logs a line and returns None.
 
-    Waits by the wall's clock: the simulated one may stand.
+    Waits in wall time, as the simulated clock may be paused.
     """
 
     def __init__(self, complaints: Complaints, chain: tuple[str, ...] = (),
                  cache_s: float = 30.0) -> None:
-        """`chain`: frames of which each should be known in the one before; may be set later."""
+        """`chain`: frames, each of which should be known in the previous one; may be set later."""
         self.chain = chain
         self.buffer = tf2_ros.Buffer(rospy.Duration(cache_s))
         self._listener = tf2_ros.TransformListener(self.buffer)
         self._complaints = complaints
         self._lock = threading.Lock()
-        self._blamed: dict[tuple[str, str], str] = {}  # by what was asked for
+        self._blamed: dict[tuple[str, str], str] = {}  # by the frames requested
 
     def knows(self, frame: str) -> bool:
-        """Whether tf has ever named it, or the robot must have it."""
+        """Whether tf has ever had this frame, or it is in the chain."""
         return frame in self.chain or any(frame in (link.parent, link.child)
                                           for link in known_links(self.buffer).values())
 
@@ -51,7 +51,7 @@ class Transforms:
 
     def pose(self, parent: str, child: str, stamp: rospy.Time = NEWEST,
              wait_s: float = 0.0) -> np.ndarray | None:
-        """(x, y, yaw) of `child` in `parent` at `stamp` (0: the newest), waited for `wait_s`."""
+        """(x, y, yaw) of `child` in `parent` at `stamp` (0: the newest); waits up to `wait_s`."""
         end = time.monotonic() + wait_s
         while (_is_askable(child, stamp) and not self.buffer.can_transform(parent, child, stamp)
                and time.monotonic() < end and not rospy.is_shutdown()):
@@ -60,13 +60,13 @@ class Transforms:
         return None if found is None else _in_the_plane(found)
 
     def newest_pose(self, parent: str, child: str, tolerance_s: float) -> np.ndarray | None:
-        """(x, y, yaw) of `child` in `parent`; None if tf has none that is new enough."""
+        """(x, y, yaw) of `child` in `parent`; None if tf has none within the tolerance."""
         found = self._look_up(parent, child, NEWEST)
         if found is None:
             return None
         stamp = found.header.stamp
         if not stamp.is_zero() and (rospy.Time.now() - stamp).to_sec() > tolerance_s:
-            self._blame(parent, child, stamp)  # a stamp of 0: all of it is static
+            self._blame(parent, child, stamp)  # a stamp of 0: all links are static
             return None
         self._trust(parent, child)
         return _in_the_plane(found.transform)
@@ -101,12 +101,12 @@ class Transforms:
             self._complaints.present(what)
 
     def _settled(self, parent: str, child: str) -> set[str]:
-        """What was blamed for these two, unless it still is for two others."""
+        """What was blamed for these two frames, unless it still is for others."""
         return {self._blamed.pop((parent, child), None)} - {None, *self._blamed.values()}
 
 
 def _fault(link: Link, stamp: rospy.Time) -> tuple[str, str, float | None]:
-    """What is missing, why, and the patience with it, where a transform is not to be had."""
+    """What is missing, why, and the patience with it, for an unavailable transform."""
     name = f"transform from {link.parent} to {link.child}"
     if link.newest is None:
         return name, "nothing publishes it on /tf or /tf_static", None
@@ -120,12 +120,12 @@ def _fault(link: Link, stamp: rospy.Time) -> tuple[str, str, float | None]:
 
 
 def is_far(stamp: rospy.Time) -> bool:
-    """Whether it is too far from now to be asked of tf2; 0, the newest, never is."""
+    """Whether it is too far from now for a tf2 lookup; 0, the newest, never is."""
     return not stamp.is_zero() and abs(stamp.to_sec() - rospy.Time.now().to_sec()) > FAR
 
 
 def _is_askable(child: str, stamp: rospy.Time) -> bool:
-    """Whether tf2 answers rather than ends the process or refuses the name."""
+    """Whether a tf2 lookup is safe: it would neither abort nor reject the name."""
     return not is_far(stamp) and "\0" not in child
 
 

@@ -43,7 +43,7 @@ def load_track_file(path: str | Path) -> TrackFile:
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "not a text file"
         raise TrackError(f"{path}: {reason}") from error
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise TrackError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") from error
     try:
         return _track_file(values)

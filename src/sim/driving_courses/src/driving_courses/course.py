@@ -74,7 +74,7 @@ def load_course(name: str | Path) -> Course:
     except OSError as error:
         known = ", ".join(sorted(found.stem for found in FOLDER.glob("*.yaml")))
         raise CourseError(f"{path}: {error.strerror}; there are: {known}") from error
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise CourseError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") \
             from error
     course = _fill(Course, values, str(path))

@@ -1,9 +1,9 @@
-"""Boxes out of what YOLO networks put out: pure functions on arrays.
+"""Decodes the output of YOLO networks to boxes: pure functions on arrays.
 
 Two layouts are known, for a picture and C classes:
-- v5: (1, N, 5 + C), a row a candidate: middle x, middle y, width, height in px of the input, how
-  sure it is that something is there, and C class scores; what counts is the product of the two.
-- v8: (1, 4 + C, N), a column a candidate: the same four, and C class scores, which count.
+- v5: (1, N, 5 + C), a row per candidate: centre x, centre y, width, height in px of the input,
+objectness, and C class scores; the score is objectness times class score.
+- v8: (1, 4 + C, N), a column per candidate: the same four, and C class scores.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 V5, V8 = "v5", "v8"
-MOST_CANDIDATES = 3000  # the surest; more cost time and never matter
+MOST_CANDIDATES = 3000  # with the highest scores; more cost time and never matter
 
 
 @dataclass(frozen=True)
 class Detections:
-    """What was found in one picture, the surest first."""
+    """The detections in one image, highest score first."""
 
     boxes: np.ndarray  # (n, 4) float, left, top, right, bottom, px
     scores: np.ndarray  # (n,) float, 0..1
@@ -51,15 +51,15 @@ def layout_of(shape: tuple[int, ...], class_count: int | None) -> tuple[str, int
 def decode(output: np.ndarray, layout: str, confidence: float, iou: float) -> Detections:
     """Boxes in px of the network's input, from one raw output (1, ., .) float.
 
-    Kept is what scores above `confidence` (0..1) and does not overlap a surer box of its class by
-    more than `iou` (0..1). Candidates that are not finite or have no area are left out.
+    Keeps candidates that score above `confidence` (0..1) and do not overlap a higher-scoring box of
+    their class by more than `iou` (0..1). Drops those that are not finite or have no area.
     """
     table = output[0].T if layout == V8 else output[0]
     if layout == V8:
         scores = table[:, 4:]
     else:
-        table = table[table[:, 4] > confidence]  # a product is never larger than its factor
-        with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is left out below
+        table = table[table[:, 4] > confidence]  # a product of scores is at most its factor
+        with np.errstate(invalid="ignore", over="ignore"):  # non-finite values are dropped below
             scores = table[:, 5:] * table[:, 4:5]
     if not len(table):
         return nothing()
@@ -75,7 +75,7 @@ def decode(output: np.ndarray, layout: str, confidence: float, iou: float) -> De
 
 
 def nothing() -> Detections:
-    """Of a picture in which nothing was found."""
+    """The result for an image without detections."""
     return Detections(np.empty((0, 4)), np.empty(0), np.empty(0, int))
 
 
@@ -87,7 +87,7 @@ def corners(boxes: np.ndarray) -> np.ndarray:
 
 
 def suppress(boxes: np.ndarray, classes: np.ndarray, iou: float) -> np.ndarray:
-    """Rows (k,) to keep of boxes (n, 4) that come surest first: one for each thing of a class."""
+    """Rows (k,) to keep of boxes (n, 4) in order of score: non-maximum suppression by class."""
     areas = (boxes[:, 2:] - boxes[:, :2]).prod(axis=1)
     alive, kept = np.arange(len(boxes)), []
     while len(alive):

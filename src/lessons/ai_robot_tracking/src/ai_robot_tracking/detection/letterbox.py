@@ -1,4 +1,4 @@
-"""Fits pictures of any shape into a network's input, and boxes back into the picture."""
+"""Fits images of any shape into a network's input, and maps boxes back to the image."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-PADDING = 114  # grey level beside the picture, as YOLO networks are trained with
+PADDING = 114  # grey level of the padding with which YOLO networks are trained
 
 
 @dataclass(frozen=True)
 class Placement:
-    """Where a picture lies in the network's input: input = picture * scale + offset, in px."""
+    """The image's place in the network's input: input = image * scale + offset, in px."""
 
     scale: float
     left: int
@@ -24,7 +24,7 @@ def letterbox(picture: np.ndarray, width: int, height: int) -> tuple[np.ndarray,
     rows, columns = picture.shape[:2]
     scale = min(height / rows, width / columns)
     inner = (max(1, round(columns * scale)), max(1, round(rows * scale)))
-    # Half a pixel too many goes right and below.
+    # An odd pixel of padding goes to the right and below.
     placement = Placement(scale, (width - inner[0]) // 2, (height - inner[1]) // 2)
     if (columns, rows) != inner:
         picture = cv2.resize(picture, inner, interpolation=cv2.INTER_LINEAR)

@@ -10,7 +10,7 @@ from vision_msgs.msg import Detection2D, Detection2DArray, ObjectHypothesisWithP
 
 from ai_robot_tracking.detection.decoding import Detections
 
-# Bytes of a pixel, and how OpenCV brings it to RGB (None: it is RGB).
+# Bytes per pixel, and OpenCV's conversion to RGB (None: it is RGB).
 ENCODINGS = {
     "rgb8": (3, None), "bgr8": (3, cv2.COLOR_BGR2RGB), "8UC3": (3, cv2.COLOR_BGR2RGB),
     "rgba8": (4, cv2.COLOR_RGBA2RGB), "bgra8": (4, cv2.COLOR_BGRA2RGB),
@@ -20,11 +20,11 @@ ENCODINGS = {
 
 
 class PictureError(Exception):
-    """A message holds no picture that can be read; one line."""
+    """The message's image cannot be read; one line."""
 
 
 def rgb_of(message: Image) -> np.ndarray:
-    """(h, w, 3) uint8 RGB; PictureError if encoding, size and bytes do not belong together."""
+    """(h, w, 3) uint8 RGB; PictureError if encoding, size and data are inconsistent."""
     if message.encoding not in ENCODINGS:
         raise PictureError(f"encoding '{message.encoding}' is not among {', '.join(ENCODINGS)}")
     depth, conversion = ENCODINGS[message.encoding]

@@ -1,4 +1,4 @@
-"""A network in an ONNX file, checked when it is opened, asked picture by picture."""
+"""A network in an ONNX file, checked when opened, run image by image."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from ai_robot_tracking.detection.names import (
 )
 from ai_robot_tracking.settings import SettingsError
 
-USUAL_SIZE = (640, 640)  # px, of an export that says nothing else
+USUAL_SIZE = (640, 640)  # px, if neither model nor YAML file gives a size
 LARGEST_FILE = 1 << 30  # bytes
 CELL = 8  # px: YOLO has a candidate for each cell of this side at least; after NMS are fewer
-SILENT = 4  # onnxruntime's log: what it would say comes in our own line
+SILENT = 4  # onnxruntime's log level: its errors are in our own line
 TYPES = {"tensor(float)": np.float32, "tensor(float16)": np.float16}
 EXPORT = "export it anew: yolo export model=best.pt format=onnx"
 
 
 class ModelError(Exception):
-    """The file holds no network that can be used here; one line."""
+    """The file contains no usable network; one line."""
 
 
 class Model:
@@ -101,7 +101,7 @@ class Model:
         return tables[0].name
 
     def _layout(self, names: list[str] | None) -> tuple[str, int]:
-        """By trying it once on an empty picture: an export need not say its output's size."""
+        """Found by one run on an empty image: an export need not state its output's size."""
         empty = np.full((self.height, self.width, 3), PADDING, np.uint8)
         try:
             shape = self.run(empty).shape
@@ -119,7 +119,7 @@ class Model:
 
 
 def _open(path: Path, threads: int) -> onnxruntime.InferenceSession:
-    if not path.is_file():  # nor a pipe or a device: they may never end
+    if not path.is_file():  # refuses pipes and devices, which may never end
         reason = "there is no such file"
         if path.exists():
             reason = "is a folder" if path.is_dir() else "is not a regular file"
@@ -143,7 +143,7 @@ def _open(path: Path, threads: int) -> onnxruntime.InferenceSession:
 
 
 def _fixed(side: int | str | None) -> int | None:
-    """A side that the file fixes; names and nothing stand for any size."""
+    """A side if the file fixes it; None for a name or nothing, which mean any size."""
     return side if isinstance(side, int) and side > 0 else None
 
 

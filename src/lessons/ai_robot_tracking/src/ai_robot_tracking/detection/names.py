@@ -1,4 +1,4 @@
-"""What class numbers mean: from a YAML file beside the network, or from what its export holds."""
+"""Names of classes: from a YAML file beside the network, or from the export's metadata."""
 
 from __future__ import annotations
 

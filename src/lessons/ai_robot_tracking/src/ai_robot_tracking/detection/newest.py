@@ -1,4 +1,4 @@
-"""A place for one thing: what comes later replaces it, and what nobody took is counted."""
+"""A queue of length one: a new item replaces an old one, and replaced ones are counted."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ T = TypeVar("T")
 
 
 class Newest(Generic[T]):
-    """Between a thread that gets pictures and one that is slower."""
+    """Connects a thread that receives items with a slower one."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
@@ -17,7 +17,7 @@ class Newest(Generic[T]):
         self._skipped = self._taken = 0
 
     def put(self, item: T) -> None:
-        """Leave the newest; the one before is skipped if it is still here."""
+        """Put the newest item; one that was not taken is skipped."""
         with self._changed:
             self._skipped += self._item is not None
             self._item = item

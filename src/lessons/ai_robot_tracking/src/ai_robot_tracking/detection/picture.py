@@ -32,7 +32,7 @@ def class_colour(label: int) -> tuple[int, int, int]:
 
 def _write(picture: np.ndarray, text: str, corner: tuple[int, int], colour: tuple[int, int, int],
            size: float) -> None:
-    """On a patch above the box, or within it where there is no room above."""
+    """Write on a patch above the box, or inside it if there is no room above."""
     (width, height), below = cv2.getTextSize(text, FONT, size, 1)
     left = max(0, min(corner[0], picture.shape[1] - width - 2))
     top = corner[1] - height - below - 2

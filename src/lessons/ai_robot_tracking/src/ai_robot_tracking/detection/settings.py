@@ -1,4 +1,4 @@
-"""The detector's numbers: from its YAML file, and from the node's own parameters, which win."""
+"""The detector's settings: from its YAML file, overridden by the node's own parameters."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ FIELDS = {entry.name: entry for entry in fields(Settings)}
 
 
 def read_settings(path: Path | str, given: Mapping[str, object]) -> Settings:
-    """The file's numbers with those of `given` (ROS parameters) in their place.
+    """The file's settings, overridden by those in `given` (ROS parameters).
 
     Raises SettingsError for an unknown or missing key and for a value that does not fit.
     """
@@ -50,6 +50,6 @@ def read_yaml(path: Path) -> object:
     """What the file holds; SettingsError if it is not there or no YAML."""
     try:
         return yaml.safe_load(path.read_text(encoding="utf-8"))
-    except Exception as error:  # PyYAML lets out KeyError, IndexError and more
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         reason = (str(error).splitlines() or [type(error).__name__])[0]
         raise SettingsError(f"{path}: cannot be read: {reason}") from None

@@ -1,1 +1,1 @@
-"""What a red cylinder does in a room, and the world files in which it does so."""
+"""Scenes with a red cylinder that moves in a room, and their world files."""

@@ -1,4 +1,4 @@
-"""What a seed makes of a scene: how the red cylinder goes, and what makes it hard to see.
+"""Scenes drawn from a seed: the red cylinder's path, and what makes it hard to see.
 
 The room is square; its middle is the world's origin, where the car starts.
 """
@@ -15,7 +15,7 @@ STATIC, MOVING, LIGHT, OCCLUSION, DISTRACTORS = KINDS = (
 HALF_ROOM = 5.0             # m from the middle to a wall
 HALF_REACH = 3.0            # m that the cylinder stays from the middle, along x and along y
 SPEED, STEP = 0.3, 0.5      # m/s; s between two way-points
-DURATION = 120.0            # s of way before it goes all of it back
+DURATION = 120.0            # s of path before it returns along all of it
 MOST_TURN = 0.8             # rad/s, so that no bend is narrower than 0.375 m
 TURN_TIME = (1.0, 3.0)      # s between two changes of the turn
 START_DISTANCE, START_BEARING = (1.5, 3.0), math.radians(30)  # of the cylinder before the car

@@ -1,10 +1,10 @@
 """Pictures by our own renderer, with the boxes of what is really seen in them.
 
-Each world is drawn three times over: as a camera sees it, with every thing in a flat colour of its
-own, and each thing alone in a view twice as wide. What counts as an object to be found:
-its box holds the pixels that are seen of it, both sides of the box are at least 12 px in a picture
-640 px wide, and at least half of the thing is seen, neither hidden nor outside the picture. What is
-seen of the others is kept as a box that is neither to be found nor wrong to find.
+Each world is drawn three times: as a camera sees it, with each object in a flat colour of its own,
+and each object alone in a view twice as wide. A box encloses an object's visible pixels. The object
+is to be found if both sides of its box are at least 12 px in an image 640 px wide, and at least
+half of it is visible, neither hidden nor outside the image. Boxes of all other visible objects are
+kept, but neither missing nor finding them counts as an error.
 """
 
 from __future__ import annotations

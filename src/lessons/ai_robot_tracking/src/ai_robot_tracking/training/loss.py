@@ -1,7 +1,7 @@
-"""Which cell answers for which box, and what a wrong answer costs.
+"""Assigns cells to boxes, and computes the loss.
 
 Cells within a box compete for it by the root of their class score times the sixth power of their
-overlap; the ten best answer for it, each with as much confidence as its box is good.
+overlap; the ten best are assigned to it, with target scores by the quality of their boxes.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def detection_loss(
     target = torch.zeros_like(logits)
     label = truth[..., 0].clamp(min=0).long().gather(1, owner.clamp(min=0))
     target.scatter_(2, label[..., None], (quality * answers)[..., None])
-    # What hardly shows is neither to be found nor wrong to find.
+    # Barely visible objects are neither to be found nor wrong to find.
     hardly = (near & ((truth[..., 0] >= 0) & (truth[..., 5] == 0))[..., None]).any(1)
     weight = (answers | ~hardly).float()
     cost = functional.binary_cross_entropy_with_logits(logits, target, reduction="none").sum(2)
@@ -67,7 +67,7 @@ def _assign(
     merit = scores**SCORE_POWER * overlap**OVERLAP_POWER * near + TINY * near
     best = merit.topk(ANSWERING, dim=2)
     chosen = torch.zeros_like(merit).scatter_(2, best.indices, best.values) > 0
-    # A cell that several boxes want answers for the one that it overlaps most.
+    # A cell claimed by several boxes is assigned to the one that it overlaps most.
     claim = torch.where(chosen, overlap, torch.full_like(overlap, -1.0))
     most, owner = claim.max(1)
     owner = torch.where(most >= 0, owner, torch.full_like(owner, -1))

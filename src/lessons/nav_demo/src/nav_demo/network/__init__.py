@@ -1,1 +1,1 @@
-"""Whether several machines can talk to each other: what check_network looks at."""
+"""The checks of check_network: whether several machines can communicate."""

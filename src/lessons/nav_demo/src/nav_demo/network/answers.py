@@ -1,4 +1,4 @@
-"""What the master and the nodes answered, judged."""
+"""Judges the answers of the master and the nodes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from nav_demo.network.findings import Finding, is_loopback
 from nav_demo.network.settings import split_uri
 
 SLOW_MS = 100.0   # of a call's median
-CLOCKS_APART = 2  # s; what an HTTP date tells is good to 1 s
+CLOCKS_APART = 2  # s; an HTTP date has a resolution of 1 s
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def check_master_answer(answer: str, host: str, port: int) -> list[Finding]:
 
 
 def check_callback(came: bool, name: str, host: str, address: str) -> list[Finding]:
-    """Whether the master's machine could call this one by the name it was told."""
+    """Whether the master's machine could call this one by its registered name."""
     if came:
         return []
     return [Finding(f"the master on {host} cannot call this machine by {name!r}: nodes there will "

@@ -1,4 +1,4 @@
-"""Questions to the machine, to the master and to the nodes; each ends within TIMEOUT."""
+"""Queries the machine, the master and the nodes, each within TIMEOUT."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ def address_towards(address: str) -> str:
 
 
 def surroundings() -> Surroundings:
-    """Of this machine."""
+    """The Surroundings of this machine."""
     return Surroundings(addresses_of, is_mine, address_towards, socket.gethostname())
 
 
 class _Transport(xmlrpc.client.Transport):
-    """Gives up after TIMEOUT, and keeps the date that came with the last answer."""
+    """A transport with TIMEOUT that keeps the last response's Date header."""
 
     date: str | None = None
 
@@ -73,7 +73,7 @@ class Peer:
         self._calls = xmlrpc.client.ServerProxy(uri, transport=self._transport)
 
     def call(self, method: str, *arguments: object) -> object:
-        """The value of an answer, or None where it was a refusal. Raises OSError and so on."""
+        """The value of an answer, or None if the call was refused. Raises OSError and others."""
         code, _, value = getattr(self._calls, method)(CALLER, *arguments)
         return value if code == 1 else None
 
@@ -106,7 +106,7 @@ class Peer:
 
 
 def registered_nodes(master: Peer) -> list[Node]:
-    """All that the master knows, each asked whether it is there."""
+    """All nodes that the master knows, each checked for an answer."""
     state = master.call("getSystemState")
     names = sorted({name for kind in state for _, users in kind for name in users})
     uris = {name: master.call("lookupNode", name) for name in names}
@@ -128,13 +128,13 @@ def registered_nodes(master: Peer) -> list[Node]:
 
 
 def has_publisher(master: Peer, topic: str) -> bool:
-    """Whether somebody publishes it."""
+    """Whether the topic has a publisher."""
     return any(name == topic and users for name, users in master.call("getSystemState")[0])
 
 
 @contextmanager
 def _listening(came: threading.Event):
-    """A server in this process that only waits for publisherUpdate; gives its port."""
+    """A server in this process that only waits for publisherUpdate; yields its port."""
     server = SimpleXMLRPCServer(("0.0.0.0", 0), logRequests=False)
     server.register_function(lambda *_: (came.set(), (1, "", 0))[1], "publisherUpdate")
     thread = threading.Thread(target=server.serve_forever, args=(0.1,), daemon=True)

@@ -1,4 +1,4 @@
-"""What was found wrong, in one line each, with what to type."""
+"""The faults found, one line each, with a remedy to type."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ def check_master(environment: Mapping[str, str], around: Surroundings) -> list[F
 
 
 def advertised_name(environment: Mapping[str, str], own_name: str) -> tuple[str, str]:
-    """By which name other machines are told to reach nodes of this terminal, and where it is from.
+    """The name by which other machines reach this terminal's nodes, and its source.
 
     ROS_HOSTNAME wins over ROS_IP, and that over the machine's name, as in rosgraph.
     """
