@@ -41,7 +41,7 @@ HONEST = {"display": 1, "class": "rviz/Grid", "frame": "map", "options": {"Alpha
     ({"options": []}, "not of type dict"), ({"options": {"Alpha": 2}}, "number from 0 to 1"),
     ({"options": {"Alpha": 10 ** 400}}, "number from 0 to 1"),
     ({"options": {"Alpha": True}}, "number from 0 to 1"),
-    ({"options": {"Plane": ["XY"]}}, "there are XY, XZ, YZ"),
+    ({"options": {"Plane": ["XY"]}}, "is not one of XY, XZ, YZ"),
     ({"options": {"Color": "1; 2; 300"}}, "colour such as"),
     ({"options": {"Plane Cell Count": 10 ** 9}}, "integer from 1 to 1000"),
     ({"options": {"Depth": 1}}, "no option 'Depth'"),
