@@ -28,6 +28,10 @@ class PageLink:
         number = self.send(op, **args)
         return wait_until(lambda: self.answers.get(number), f"an answer to {op}")
 
+    def pause(self) -> None:
+        """From now on nothing is read from the connection."""
+        loop.call_soon_threadsafe(self._socket._response.connection.transport.pause_reading)
+
     def abort(self) -> None:
         """The connection is cut without a goodbye."""
         loop.call_soon_threadsafe(self._socket._response.connection.transport.abort)
