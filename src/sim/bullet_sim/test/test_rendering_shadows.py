@@ -23,7 +23,6 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering import shadows
 from bullet_sim.rendering.egl import EglRenderer
 from bullet_sim.rendering.frame import CameraView
-from bullet_sim.rendering.rectangles import TILE, tiles
 from bullet_sim.rendering.scene import Scene
 from bullet_sim.rendering.shadows import Shadows
 
@@ -360,22 +359,3 @@ def test_lights_beyond_the_fourth_cast_none_and_say_so(renderer, caplog):
     assert caplog.messages == ["more than 4 lights cast shadows; these do not: sun4, sun5"]
     slope = 1 / np.linalg.norm((0.5, 0.2, 1.0))
     np.testing.assert_allclose(picture[240, 320], 255 * 0.2 * slope, atol=1)
-
-
-@pytest.mark.parametrize("places", [
-    [[[-0.5, -0.25], [0.5, 0.75]]], [[[-1.0, -1.0], [1.0, 1.0]]], [[[-1.0, 0.3], [-0.99, 1.0]]],
-    [[[-0.9, -0.9], [-0.2, 0.3]], [[-0.3, -0.1], [0.2, 0.9]], [[0.7, -0.9], [0.8, -0.8]]]])
-def test_tiles_are_the_picture_once_and_say_where_the_places_are(places):
-    places, size = np.array(places), np.array([640, 400])
-    count, inside = np.zeros((400, 640), int), np.zeros((400, 640), bool)
-    for (left, first, width, height), there in tiles(places, 640, 400):
-        assert width > 0 and height > 0
-        count[first:first + height, left:left + width] += 1
-        inside[first:first + height, left:left + width] = there
-    assert (count == 1).all()
-    wanted = np.zeros_like(inside)
-    for low, high in ((places + 1) / 2 * size).tolist():
-        wanted[int(low[1]):int(high[1]), int(low[0]):int(high[0])] = True
-    for first, left in np.ndindex(7, 10):
-        tile = np.s_[TILE * first:TILE * (first + 1), TILE * left:TILE * (left + 1)]
-        assert (inside[tile] == wanted[tile].any()).all()

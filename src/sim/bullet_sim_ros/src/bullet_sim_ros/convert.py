@@ -17,7 +17,7 @@ from sensor_msgs.msg import CameraInfo, Imu, JointState, LaserScan
 
 from bullet_sim.description import CameraDescription
 from bullet_sim.pose import Pose, Quaternion, normalised
-from bullet_sim.rendering.projection import strips
+from bullet_sim.rendering.projection import STRIP, strips
 from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading
@@ -156,9 +156,12 @@ def image_to_msg(rgb: np.ndarray, time: float, frame: str, encoding: str = "rgb8
 
 def remove_outside(depth: np.ndarray, near: float, far: float) -> None:
     """Set values of an (h, w) float32 depth in m that are not in `near` to `far` to NaN."""
+    nothing = np.full_like(depth[:STRIP], math.nan)
     for rows in strips(len(depth)):
         part = depth[rows]
-        np.copyto(part, np.float32(math.nan), where=(part < near) | (part > far))
+        outside = (part < near) | (part > far)
+        # OpenCV's masked copy is three times as fast as NumPy's.
+        cv2.copyTo(nothing[:len(part)], outside.view(np.uint8), part)
 
 
 def depth_to_msg(depth: np.ndarray, time: float, frame: str, millimetres: bool) -> ArrayImage:

@@ -10,8 +10,6 @@ camera inside its own housing sees out.
 
 from __future__ import annotations
 
-import ctypes
-import ctypes.util
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,7 +19,7 @@ import moderngl
 import numpy as np
 
 from bullet_sim.profiler import Profiler
-from bullet_sim.rendering import lights
+from bullet_sim.rendering import gl_calls, lights
 from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
 from bullet_sim.rendering.gpu_surfaces import (
     IMAGE_UNIT,
@@ -105,7 +103,6 @@ class EglRenderer:
             self._smallest = Target(self._context, (1, 1))
         self._prepared: dict[int, _Prepared] = {}  # by version, the latest last
         self._targets: dict[tuple[int, int, int], Target] = {}
-        self._finish = _finish_without_gil() or self._context.finish
 
     def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
         """RGB, and depth if wanted, of one pass."""
@@ -117,7 +114,7 @@ class EglRenderer:
                 prepared = self._prepare(scene)
                 self._submit(scene, prepared, view, target, _UNSEEN / 2 if depth else _UNSEEN)
                 target.end(depth)
-                self._finish()
+                gl_calls.finish()
             with measure("read back"):
                 rgba, raw = target.read(depth)
         with measure("convert"):
@@ -132,7 +129,7 @@ class EglRenderer:
         with self._context:
             # Drivers keep what was drawn in last, deleted or not, until something else is.
             self._smallest.start((0.0, 0.0, 0.0))
-            self._finish()
+            gl_calls.finish()
             self._context.gc()
 
     def close(self) -> None:
@@ -270,11 +267,8 @@ def _open_context() -> moderngl.Context:
 
 
 def _shadow_places(prepared: _Prepared, nodes: list[Node], seen: Visibility,
-                   clip_world: np.ndarray) -> dict[int, np.ndarray]:
-    """The rectangles (k, 2, 2) of the picture in which there can be shadows on a part, by number.
-
-    The shadows are ready to be drawn.
-    """
+                   clip_world: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+    """As `Shadows.seen_on`; the shadows are ready to be drawn."""
     if prepared.shadows is None:
         return {}
     places = prepared.shadows.seen_on(nodes, prepared.outlines.boxes(nodes),
@@ -284,23 +278,13 @@ def _shadow_places(prepared: _Prepared, nodes: list[Node], seen: Visibility,
     return places
 
 
-def _pieces(item: _Item, shadows: np.ndarray | None, view: CameraView) -> list[_Piece]:
-    """How to draw a surface that can have shadows in rectangles of the picture."""
+def _pieces(item: _Item, shadows: tuple[np.ndarray, np.ndarray] | None,
+            view: CameraView) -> list[_Piece]:
+    """How to draw a surface, with the rectangles where it is and where shadows can be on it."""
     if item.shaded is None or shadows is None:
         return [(item, item.plain, None)]
     if not item.surface.triangles.convex:
         return [(item, item.shaded, None)]
+    extent, places = shadows
     return [(item, item.shaded if shaded else item.plain, place)
-            for place, shaded in tiles(shadows, view.width, view.height)]
-
-
-def _finish_without_gil() -> Callable[[], None] | None:
-    """glFinish as a plain C call: other Python threads run meanwhile. In moderngl's they wait."""
-    name = ctypes.util.find_library("GL")
-    try:
-        finish = ctypes.CDLL(name).glFinish if name else None
-    except (OSError, AttributeError):
-        return None
-    if finish is not None:
-        finish.restype = None
-    return finish
+            for place, shaded in tiles(places, extent, view.width, view.height)]

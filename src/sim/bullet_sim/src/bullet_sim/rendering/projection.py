@@ -13,7 +13,7 @@ import numpy as np
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView
 
-_STRIP = 16  # rows of a picture whose values stay in the processor's cache
+STRIP = 16  # rows of a picture whose values stay in the processor's cache
 # Camera frame (x forward, y left, z up) to OpenGL's eye frame (x right, y up, z backward).
 _EYE_FROM_CAMERA = np.array([
     [0.0, -1.0, 0.0, 0.0],
@@ -59,4 +59,4 @@ def metres_from_depth(depth: np.ndarray, near: float, far: float) -> np.ndarray:
 
 def strips(height: int) -> Iterator[slice]:
     """A picture's rows, a few at a time: what several passes go over one after another."""
-    return (slice(top, top + _STRIP) for top in range(0, height, _STRIP))
+    return (slice(top, top + STRIP) for top in range(0, height, STRIP))

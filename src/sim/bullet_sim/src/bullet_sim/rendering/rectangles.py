@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import functools
 import itertools
-import math
 
 import numpy as np
 
@@ -31,10 +30,24 @@ def rectangles_of(corners: np.ndarray, clip_world: np.ndarray) -> np.ndarray:
     """
     clip = corners @ clip_world[:, :3].T + clip_world[:, 3]
     ahead = clip[..., 2] + clip[..., 3]  # not below 0: not behind the near plane
-    if (ahead >= 0).all():
-        place = clip[..., :2] / clip[..., 3:]
-        return np.stack([place.min(axis=1).clip(-1.0), place.max(axis=1).clip(max=1.0)], axis=1)
-    edges = _edges(corners.shape[1])
+    behind = (ahead < 0).any(axis=1)
+    if not behind.any():
+        return _around(clip)
+    found = np.empty((len(clip), 2, 2))
+    found[~behind] = _around(clip[~behind])
+    found[behind] = _around_ahead(clip[behind], ahead[behind])
+    return found
+
+
+def _around(clip: np.ndarray) -> np.ndarray:
+    """Of boxes whose corners (n, c, 4) are all before the near plane."""
+    place = clip[..., :2] / clip[..., 3:]
+    return np.stack([place.min(axis=1).clip(-1.0), place.max(axis=1).clip(max=1.0)], axis=1)
+
+
+def _around_ahead(clip: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+    """Of the parts before the near plane of boxes with corners (n, c, 4), `ahead` (n, c) of it."""
+    edges = _edges(clip.shape[1])
     one, other = clip[:, edges[0]], clip[:, edges[1]]
     cut = (ahead[:, edges[0]] < 0) != (ahead[:, edges[1]] < 0)
     rise = np.where(cut, ahead[:, edges[0]] - ahead[:, edges[1]], 1.0)
@@ -46,27 +59,39 @@ def rectangles_of(corners: np.ndarray, clip_world: np.ndarray) -> np.ndarray:
     return np.stack([np.maximum(low.min(axis=1), -1.0), np.minimum(high.max(axis=1), 1.0)], axis=1)
 
 
-def tiles(places: np.ndarray, width: int, height: int) -> list[tuple[Scissor, bool]]:
-    """The picture in rectangles of whole tiles, and whether one of the places (n, 2, 2) is there.
+def tiles(places: np.ndarray, extent: np.ndarray, width: int,
+          height: int) -> list[tuple[Scissor, bool]]:
+    """`extent` (2, 2) of a picture in rectangles of whole tiles, and whether one of the places
+    (n, 2, 2) is there.
 
     Tiles are as large as llvmpipe's, which it draws one by one.
     """
-    size = np.array([width, height])
-    inside = np.zeros((math.ceil(height / TILE), math.ceil(width / TILE)), bool)
-    low = np.floor((places[:, 0] + 1) / 2 * size / TILE).astype(int)
-    high = np.ceil((places[:, 1] + 1) / 2 * size / TILE).astype(int)
-    for (left, first), (right, last) in zip(low.tolist(), high.tolist(), strict=True):
-        inside[first:last, left:right] = True
-    return [
-        ((left * TILE, first * TILE, min(right * TILE, width) - left * TILE,
-          min(last * TILE, height) - first * TILE), bool(inside[first, left]))
-        for first, last in _alike(inside) for left, right in _alike(inside[first][:, None])]
+    size = np.array([width, height]) / (2 * TILE)
+    every = np.concatenate([extent[None], places])
+    low = np.floor((every[:, 0] + 1) * size).astype(int).tolist()
+    high = np.ceil((every[:, 1] + 1) * size).astype(int).tolist()
+    (first_column, first_row), (end_column, end_row) = low[0], high[0]
+    rows = [0] * end_row  # bit c: whether one is in column c
+    for (left, first), (right, last) in zip(low[1:], high[1:], strict=True):
+        for row in range(first, min(last, end_row)):
+            rows[row] |= (1 << right) - (1 << left)
+    found = []
+    for first, last, columns in _runs(rows[first_row:], first_row):
+        inside = [bool(columns >> column & 1) for column in range(first_column, end_column)]
+        found += [((left * TILE, first * TILE, min(right * TILE, width) - left * TILE,
+                    min(last * TILE, height) - first * TILE), there)
+                  for left, right, there in _runs(inside, first_column)]
+    return found
 
 
-def _alike(rows: np.ndarray) -> list[tuple[int, int]]:
-    """From where to where rows are the same."""
-    changes = np.flatnonzero((rows[1:] != rows[:-1]).any(axis=1)) + 1
-    return list(itertools.pairwise([0, *changes.tolist(), len(rows)]))
+def _runs(values: list[int], start: int) -> list[tuple[int, int, int]]:
+    """Where equal values begin and end, counted from `start`, and the value."""
+    found = []
+    for value, equal in itertools.groupby(values):
+        end = start + len(list(equal))
+        found.append((start, end, value))
+        start = end
+    return found
 
 
 @functools.cache

@@ -112,8 +112,9 @@ class Shadows:
         self._areas: np.ndarray  # (lights, casters, 2, 2) px, of the maps, where they are
 
     def seen_on(self, nodes: Sequence[Node], boxes: np.ndarray, seen: np.ndarray,
-                clip_world: np.ndarray) -> dict[int, np.ndarray]:
-        """Rectangles (k, 2, 2) of the picture that shadows on a part do not leave, by its number.
+                clip_world: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+        """The rectangle (2, 2) of the picture where a part is, and those (k, 2, 2) where shadows
+        can be on it, by its number.
 
         Boxes (n, 8, 3) are around the scene's parts, and `seen` (n,) are in the picture.
         """
@@ -129,7 +130,10 @@ class Shadows:
         # What another camera's picture needs stays: its shadows cannot be in this one.
         self._wanted = [node if casts or drawn is node else None for node, casts, drawn in
                         zip(self._standing, casting, self._drawn, strict=True)]
-        return {part: places[there & (other == part)] for part in np.unique(other[there]).tolist()}
+        shaded = np.unique(other[there])
+        extents = rectangles_of(boxes[shaded], clip_world)
+        return {part: (extent, places[there & (other == part)])
+                for part, extent in zip(shaded.tolist(), extents, strict=True)}
 
     def use(self) -> None:
         """Let surfaces that are drawn next have these shadows, as of the last `seen_on`."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import moderngl
 import numpy as np
 
+from bullet_sim.rendering import gl_calls
 from bullet_sim.rendering.own_memory import own_array, own_blocks
 
 # In GL_RENDERER of what draws on the processor, perhaps behind another driver.
@@ -83,8 +83,11 @@ class Target:
         """Nothing more will be drawn; what is read then is on its way."""
         if self.framebuffer is not self._single:
             self._context.copy_framebuffer(self._single, self.framebuffer)
-        for buffer, read in zip(self._buffers, self._reads(depth)):
-            read(buffer)
+        if self._buffers:
+            self._single.read_into(self._buffers[0], components=4, alignment=1)
+            if depth:
+                self._single.read_into(self._buffers[1], components=1, attachment=-1, alignment=1,
+                                       dtype="f4")
 
     def read(self, depth: bool) -> tuple[np.ndarray, np.ndarray | None]:
         """(h, w, 4) uint8, overwritten by the next picture, and raw depth (h, w) if wanted."""
@@ -94,19 +97,11 @@ class Target:
             for buffer, array in zip(self._buffers, arrays):
                 buffer.read_into(array)
         else:
-            for array, read in zip(arrays, self._reads(depth)):
-                read(array)
+            self._single.use()
+            gl_calls.read_colour(self._rgba)
+            if raw is not None:
+                gl_calls.read_depth(raw)
         return self._rgba, raw
-
-    def _reads(self, depth: bool) -> list[Callable[[moderngl.Buffer | np.ndarray], None]]:
-        """Of colour, and of depth if wanted."""
-        def colour(into: moderngl.Buffer | np.ndarray) -> None:
-            self._single.read_into(into, components=4, alignment=1)
-
-        def depths(into: moderngl.Buffer | np.ndarray) -> None:
-            self._single.read_into(into, components=1, attachment=-1, alignment=1, dtype="f4")
-
-        return [colour, depths] if depth else [colour]
 
 
 def _framebuffer(context: moderngl.Context, size: tuple[int, int],
