@@ -1,7 +1,7 @@
-"""Rectangles of a picture: where boxes in the world appear, in whole pixels, and what is around.
+"""Rectangles of an image: projections of boxes in the world, in whole pixels, and what is around.
 
-They are (2, 2): x y of two corners, -1..1 from side to side. One whose first corner is not below
-the second in both is empty.
+They are (2, 2): x y of two corners, -1..1 from side to side. If the first corner is not below the
+second in both, it is empty.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ def is_empty(rectangles: np.ndarray) -> np.ndarray:
 
 
 def rectangles_of(corners: np.ndarray, clip_world: np.ndarray) -> np.ndarray:
-    """(n, 2, 2): where in the picture boxes with these corners (n, 8, 3) are, cut to it.
+    """(n, 2, 2): rectangles of the image with boxes of these corners (n, 8, 3), clipped to it.
 
-    The bits of a corner's number tell on which of opposite sides it is; with sixteen corners it is
-    what a box sweeps over. `clip_world` (4, 4) is world to clip coordinates of the picture.
+    The bits of a corner's index tell on which of opposite sides it is; sixteen corners are the
+    region over which a box sweeps. `clip_world` (4, 4) is world to clip coordinates of the image.
     """
     clip = corners @ clip_world[:, :3].T + clip_world[:, 3]
     ahead = clip[..., 2] + clip[..., 3]  # not below 0: not behind the near plane
@@ -47,9 +47,9 @@ def rectangles_of(corners: np.ndarray, clip_world: np.ndarray) -> np.ndarray:
 
 
 def tiles(places: np.ndarray, width: int, height: int) -> list[tuple[Scissor, bool]]:
-    """The picture in rectangles of whole tiles, and whether one of the places (n, 2, 2) is there.
+    """The image as rectangles of whole tiles, and whether one of the places (n, 2, 2) is in each.
 
-    Tiles are as large as llvmpipe's, which it draws one by one.
+    Tiles have the size of llvmpipe's, which it draws one by one.
     """
     size = np.array([width, height])
     inside = np.zeros((math.ceil(height / TILE), math.ceil(width / TILE)), bool)
@@ -64,14 +64,14 @@ def tiles(places: np.ndarray, width: int, height: int) -> list[tuple[Scissor, bo
 
 
 def _alike(rows: np.ndarray) -> list[tuple[int, int]]:
-    """From where to where rows are the same."""
+    """Start and end of each run of equal rows."""
     changes = np.flatnonzero((rows[1:] != rows[:-1]).any(axis=1)) + 1
     return list(itertools.pairwise([0, *changes.tolist(), len(rows)]))
 
 
 @functools.cache
 def _edges(corners: int) -> np.ndarray:
-    """(2, n): which corners of a box in so many dimensions edges go between."""
+    """(2, n): the corners at the ends of each edge of a box with so many dimensions."""
     bits = [1 << bit for bit in range(corners.bit_length() - 1)]
     return np.array([(one, one | bit) for bit in bits for one in range(corners)
                      if not one & bit]).T
