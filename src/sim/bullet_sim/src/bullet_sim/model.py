@@ -194,7 +194,7 @@ class Model(ModelState):
                                   "remove <static>")
         if held:
             raise SimulationError(f"joint {name!r} of model {self.name} is of type "
-                                  f"{held[0].type}, of which there is nothing to read or drive")
+                                  f"{held[0].type}, which cannot be read or driven")
         raise UnknownName(f"joint of model {self.name}", name, self.joints)
 
     def _without_scope(self, name: str) -> str:

@@ -117,8 +117,8 @@ class PhysicsClient:
                         useFixedBase=tree.fixed, flags=flags,
                     )
             except EngineError as error:
-                raise SimulationError(f"the engine refuses link {tree.links[0].described} and what "
-                                      f"hangs on it: {error}") from None
+                raise SimulationError(f"the engine rejects link {tree.links[0].described} and the "
+                                      f"links below it: {error}") from None
 
     def _let_collide(self, body: int, on: bool) -> None:
         group, mask = STATIC_FILTER if on else (0, 0)

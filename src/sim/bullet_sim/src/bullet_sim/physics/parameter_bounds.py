@@ -34,7 +34,7 @@ def check_physics(physics: PhysicsDescription) -> None:
         raise SimulationError(f"an update rate of {physics.real_time_update_rate:g} Hz is not "
                               f"possible; 0 (as fast as it goes) to {HIGHEST_RATE:g} is")
     if not 0 <= physics.iterations <= MOST_ITERATIONS:
-        raise SimulationError(f"{physics.iterations} solver iterations a step are not possible; "
+        raise SimulationError(f"{physics.iterations} solver iterations per step are not possible; "
                               f"0 to {MOST_ITERATIONS} are")
 
 
@@ -74,6 +74,6 @@ def check_trees(model: str, trees: Iterable[Tree]) -> None:
                 f"{counting if balls else ''}; the engine takes at most {MOST_POSITIONS}")
         if len(tree.links) > MOST_LINKS:
             raise SimulationError(
-                f"model {model} has {len(tree.links)} links in one piece, those of fixed joints "
-                f"and of collisions with a surface of their own among them; the engine takes at "
+                f"model {model} has {len(tree.links)} links in one piece, including those of "
+                f"fixed joints and of collisions with different surfaces; the engine takes at "
                 f"most {MOST_LINKS}")

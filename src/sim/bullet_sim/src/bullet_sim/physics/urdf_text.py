@@ -81,8 +81,8 @@ def urdf_text(links: Iterable[PhysicsLink], mesh_path: MeshPath) -> str:
 def _name(name: str) -> str:
     size = len(name.encode())
     if size > LONGEST_NAME:
-        raise SimulationError(f"the engine takes names of {LONGEST_NAME} bytes, not one of {size}: "
-                              f"{name}")
+        raise SimulationError(f"the engine takes names of at most {LONGEST_NAME} bytes, not of "
+                              f"{size}: {name}")
     return quoteattr(name)
 
 

@@ -127,7 +127,7 @@ def _drawable(camera: CameraDescription, renderer: Renderer, where: str) -> Came
     drawn = drawable_size(width, height, renderer.largest_px)
     if drawn == (width, height):
         return camera
-    log.warning("%s: an image of %dx%d px is not drawn, at most %d a side and %dx%d in all are; "
+    log.warning("%s: an image of %dx%d px is not drawn, at most %d per side and %dx%d in all; "
                 "%dx%d is used", where, width, height, renderer.largest_px,
                 LARGEST_SQUARE_PX, LARGEST_SQUARE_PX, *drawn)
     return replace(camera, width=drawn[0], height=drawn[1])

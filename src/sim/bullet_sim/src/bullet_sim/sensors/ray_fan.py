@@ -33,7 +33,7 @@ class RayFan:
             ray.vertical_samples, ray.vertical_resolution)
         if columns * rows > MOST_RAYS:
             asked, (columns, rows) = (columns, rows), fewer_rays(columns, rows)
-            log.warning("sensor %s of %s has %d x %d rays, and more than %d are not cast: %d x %d "
+            log.warning("sensor %s of %s has %d x %d rays, but at most %d are cast: %d x %d "
                         "over the same angles are used", description.name, link.scoped_name,
                         *asked, MOST_RAYS, columns, rows)
         self.shape = rows, columns

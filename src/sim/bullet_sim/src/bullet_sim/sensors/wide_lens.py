@@ -42,7 +42,7 @@ class WideLens:
         self._beyond = (theta > camera.lens.cutoff_angle).astype(np.uint8)
 
     def draw(self, camera: Pose, draw_view: Callable[[CameraView], np.ndarray]) -> np.ndarray:
-        """An (h, w, 3) uint8 image by `draw_view`, a pinhole's; `camera`: pose in the world."""
+        """The image (h, w, 3) uint8; `draw_view` draws a pinhole's, `camera` is a world pose."""
         side = self._camera.lens.env_texture_size
         strip = np.concatenate([
             draw_view(CameraView(side, side, self._face_fov, self._camera.near, self._camera.far,

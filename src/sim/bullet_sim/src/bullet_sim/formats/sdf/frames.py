@@ -44,7 +44,7 @@ class Frames:
         passed: list[str] = []
         while name not in (MODEL, "world"):
             if name in passed or name not in self._placed:
-                reason = "goes round in a circle" if name in passed else "is not in the model"
+                reason = "refers to itself" if name in passed else "is not in the model"
                 self._source.warn_once(
                     f"model {self._model!r}: pose frame {name!r} {reason}; model frame taken"
                 )

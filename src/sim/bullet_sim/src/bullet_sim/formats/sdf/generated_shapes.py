@@ -77,7 +77,7 @@ def _image(element: Element, source: Source, where: str, otherwise: str) -> str 
         if not path.is_file():
             raise ResourceNotFound(f"image {uri!r}", [str(path)])
         if path.suffix.lower() not in IMAGE_KINDS:
-            raise FormatError(f"{path.name} is of no kind that can be read; there are: "
+            raise FormatError(f"{path.name} is of a kind that cannot be read; there are: "
                               f"{', '.join(IMAGE_KINDS)}")
     except (ResourceNotFound, FormatError) as error:
         source.warn_once(f"{where}: {error}; {otherwise}", about=f"{where} {uri}")

@@ -131,7 +131,7 @@ def _root(tree: UrdfTree) -> str:
     reached = set(tree.depth_first(roots[0])) if roots else set()
     loop = [link for link in tree.links if link not in reached]
     if loop:
-        raise FormatError(f"robot {tree.name!r}: the joints go round in a circle through "
+        raise FormatError(f"robot {tree.name!r}: the joints form a loop through "
                           f"{', '.join(loop)}")
     return roots[0]
 
