@@ -4,7 +4,7 @@ from bullet_sim.physics.body import Body, fasten
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import Pose
 
-WORLD_BODY = -1  # PyBullet's number of what is no body
+WORLD_BODY = -1  # PyBullet's number for no body
 STRONGEST = 1e6  # N and N m: more than any load of a robot
 
 

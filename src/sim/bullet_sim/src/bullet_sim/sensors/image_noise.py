@@ -5,7 +5,7 @@ import numpy as np
 
 from bullet_sim.description import Noise
 
-_PLACES = 65_521  # where a sheet can be laid
+_PLACES = 65_521  # offsets of a sheet
 
 
 class ImageNoise:

@@ -11,7 +11,7 @@ from xacro import substitution_args
 from bullet_sim.errors import FormatError
 
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-LONGEST = 600  # letters of a line
+LONGEST = 600  # characters of a line
 UNSET = re.compile(r"environment variable '(\w+)' is not set")
 
 
