@@ -1,4 +1,4 @@
-"""Installs the algorithms with plain pip as well as through catkin."""
+"""Installs the algorithms with pip as well as through catkin."""
 
 from setuptools import find_packages, setup
 

@@ -1,4 +1,4 @@
-"""Installs the core with plain pip; catkin reads packages and package_dir of it."""
+"""Installs the core with pip; catkin reads packages and package_dir from it."""
 
 from pathlib import Path
 
@@ -16,8 +16,8 @@ setup(
     package_data={"bullet_sim": ["py.typed", "data/**/*"]},
     python_requires=">=3.11",
     install_requires=[
-        "fast-simplification>=0.2,<0.3",  # tolerance by its loss-free way, see meshes/detail.py
-        "moderngl>=5.10,<6",  # textures are let go by weak references, which 5.6 lacks
+        "fast-simplification>=0.2,<0.3",  # its loss-free mode has a tolerance, see meshes/detail.py
+        "moderngl>=5.10,<6",  # releases textures by weak references, which 5.6 lacks
         "numpy>=1.26,<3",
         "opencv-python-headless>=4.8,<5",
         "pybullet>=3.2.5,<4",

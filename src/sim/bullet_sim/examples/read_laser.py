@@ -1,4 +1,4 @@
-"""Prints the distance and direction of the nearest thing that the robot's laser sees."""
+"""Prints the distance and direction of the nearest object that the robot's laser sees."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ URDF = Path(__file__).with_name("robot.urdf").read_text(encoding="utf-8")
 
 
 def main() -> None:
-    """A box of 1 m stands 2 m ahead and 1 m to the left of the robot."""
+    """A box of 1 m stands 2 m ahead of the robot and 1 m to its left."""
     resources = Resources.from_environment()
     world = World(load_world(resources.find_world("worlds/empty.world"), resources))
     robot = world.spawn(load_model(URDF, resources), Pose((0.0, 0.0, 0.04)))

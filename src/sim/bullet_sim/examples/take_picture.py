@@ -1,4 +1,4 @@
-"""Writes what the robot's camera sees as a PNG: take_picture.py [FILE]."""
+"""Writes the image of the robot's camera as a PNG: take_picture.py [FILE]."""
 
 import sys
 from pathlib import Path
@@ -15,7 +15,7 @@ URDF = Path(__file__).with_name("robot.urdf").read_text(encoding="utf-8")
 
 
 def main(file: str) -> None:
-    """Two props of the library stand in front of the robot."""
+    """Two models of the library stand in front of the robot."""
     resources = Resources.from_environment()
     world = World(load_world(resources.find_world("worlds/empty.world"), resources))
     robot = world.spawn(load_model(URDF, resources), Pose((0.0, 0.0, 0.04)))

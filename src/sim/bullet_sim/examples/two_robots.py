@@ -1,4 +1,4 @@
-"""Drives two robots at one another until they touch, and prints where and how hard."""
+"""Drives two robots towards each other until they touch, and prints where and how hard."""
 
 import math
 from pathlib import Path
@@ -14,7 +14,7 @@ PLACES = {"a": Pose((-0.5, 0.0, 0.04)),
 
 
 def main() -> None:
-    """Each drives at 0.2 m/s; they begin 1 m apart."""
+    """Each drives at 0.2 m/s; they start 1 m apart."""
     resources = Resources.from_environment()
     world = World(load_world(resources.find_world("worlds/empty.world"), resources))
     parameters = DiffDriveParameters(wheel_separation=0.22, wheel_diameter=0.08)
@@ -22,7 +22,7 @@ def main() -> None:
         robot = world.spawn(load_model(URDF, resources), pose, name)
         drive = DiffDrive(robot.joint("left_joint"), robot.joint("right_joint"), parameters)
         drive.command(0.2, 0.0)
-        drive.update(world.timestep)  # without acceleration limits once is enough
+        drive.update(world.timestep)  # once is enough without acceleration limits
     while world.time < 5.0:
         world.step()
         for contact in world.contacts():

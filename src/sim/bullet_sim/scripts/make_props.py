@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Writes the folders of data/models that data/props/*.toml describes: plain bodies of one link.
+"""Writes the folders of data/models described by data/props/*.toml: plain bodies of one link.
 
     python3 src/sim/bullet_sim/scripts/make_props.py
 
 A table is a model. Its keys (SI units):
-  name        the model's own name where it is not that of the folder
-  like, paint another model's table, but for its name, with the look of its first part changed
+  name        the model's name if it is not that of the folder
+  like, paint copies another model's table, except its name, and changes its first part's look
   static, mass (1), link ("link"), pose and link_pose [x, y, z(, roll, pitch, yaw)], as in SDF
-  size        [x, y, z], m, of the box round all that is solid (round all, where nothing is)
-  ordinary    the size is an ordinary one of its kind; without it, that of the model of this name
-              in Gazebo's database (gazebo_models)
+  size        [x, y, z], m, of the box around all solid parts (around all parts if none is)
+  ordinary    the size is an ordinary one of its kind; without it, it is that of the model of this
+              name in Gazebo's database (gazebo_models)
   parts       list of {box = [x, y, z]}, {cylinder = [radius, length]}, {sphere = radius},
               {squares = [columns, rows, side]} (the black half of a checkerboard) or {digit = n}
               (on the four sides of a cube of 0.8 m); at = [x, y, z(, roll, pitch, yaw)] in the
@@ -26,7 +26,7 @@ DATA = Path(__file__).resolve().parents[1] / "src/bullet_sim/data"
 SOURCE = "make_props.py from data/props"
 SHAPES = ("box", "cylinder", "sphere")
 FACES = ((0.4, 0.0, 0.0), (0.0, 0.4, 90.0), (-0.4, 0.0, 180.0), (0.0, -0.4, 270.0))
-# The seven bars of a digit: across, up (of half the digit's width and height) and whether it lies.
+# The seven bars of a digit: across, up (of half the digit's width and height), whether horizontal.
 BARS = {"a": (0, 2, True), "b": (1, 1, False), "c": (1, -1, False), "d": (0, -2, True),
         "e": (-1, -1, False), "f": (-1, 1, False), "g": (0, 0, True)}
 DIGITS = {1: "bc", 2: "abged", 3: "abgcd", 4: "fgbc", 5: "afgcd", 6: "afgecd", 7: "abc",
@@ -79,7 +79,7 @@ def model_text(folder: str, table: dict) -> str:
 
 
 def add_model(parent: Element, name: str, table: dict) -> None:
-    """The `<model>` of a table whose parts are plain shapes."""
+    """Add the `<model>` of a table whose parts are plain shapes."""
     model = SubElement(parent, "model", name=name)
     if table.get("static"):
         _text(model, "static", "true")
@@ -95,7 +95,7 @@ def add_model(parent: Element, name: str, table: dict) -> None:
 
 
 def document(root: Element, source: str) -> str:
-    """The text of a file; `source`: what wrote it."""
+    """The text of a file; `source` is the script and input that wrote it."""
     indent(root, " ")
     text = tostring(root, encoding="unicode")
     return f'<?xml version="1.0"?>\n<!-- Written by {source}. -->\n{text}\n'
@@ -139,7 +139,7 @@ def _add_material(material: Element, look: str | list[float]) -> None:
 
 
 def _add_inertial(link: Element, table: dict) -> None:
-    """Of the solid parts, of one density; parts that lie at an angle count as if they did not."""
+    """Of the solid parts, with one density; the angles of parts are ignored."""
     solid = [part for part in table["parts"] if part.get("solid", True)]
     volumes = [_volume(part) for part in solid]
     mass = table.get("mass", 1)
@@ -180,7 +180,7 @@ def _volume(part: dict) -> float:
 
 
 def _sides(part: dict) -> list[float]:
-    """Sides, m, of the box with the same moments of inertia per mass."""
+    """Sides, m, of a box with the same moments of inertia per mass."""
     match _shape(part):
         case "box", size:
             return size
@@ -207,7 +207,7 @@ def _numbers(values: list[float]) -> str:
 
 
 def files() -> dict[str, str]:
-    """What the script writes: text by path below data/models."""
+    """The files that the script writes: text by path below data/models."""
     written = {}
     for folder, table in read_props().items():
         written[f"{folder}/model.sdf"] = model_text(folder, table)

@@ -17,18 +17,18 @@ import numpy as np
 from make_props import DATA, add_model, document
 
 WORLDS = DATA / "worlds"
-TERRAIN = "media/materials/textures/heightmap_bowl.png"  # where Gazebo has the one of its own
+TERRAIN = "media/materials/textures/heightmap_bowl.png"  # Gazebo has its own image there
 SEED = 1
 PIECES = 60
 DENSITY = 2000.0  # kg/m^3, of concrete
 HALF_WIDTH = 2.0  # m, of the heap
 SIDE = 129  # px of the terrain image, and m of the ground: one pixel is a metre
-TALLEST = 10.0  # m, of white
-FLAT = 10.0  # m round the origin that are level
+TALLEST = 10.0  # m, height of white
+FLAT = 10.0  # m around the origin that are level
 
 
 def rubble() -> str:
-    """Pieces that fall into a heap: four to a layer, so that they begin apart."""
+    """Pieces that fall into a heap: four per layer, so that they start apart."""
     rng = random.Random(SEED)
     models = []
     for number in range(PIECES):
@@ -64,12 +64,12 @@ def stacks() -> str:
 
 
 def _body(pose: list[float], mass: float, look: str, **shape: float | list[float]) -> dict:
-    """A table as of make_props.py."""
+    """A table as in make_props.py."""
     return {"pose": pose, "mass": mass, "parts": [{**shape, "look": f"Gazebo/{look}"}]}
 
 
 def _world(models: Iterable[tuple[str, dict]]) -> str:
-    """Models by name, under the sun and on the ground."""
+    """A world with models by name, the sun and a ground plane."""
     sdf = Element("sdf", version="1.6")
     world = SubElement(sdf, "world", name="default")
     for name in ("sun", "ground_plane"):
@@ -80,20 +80,20 @@ def _world(models: Iterable[tuple[str, dict]]) -> str:
 
 
 def terrain() -> np.ndarray:
-    """(SIDE, SIDE) uint16 grey values: level in the middle, rolling up to the rim."""
+    """(SIDE, SIDE) uint16 grey values: level in the middle, rising in waves to the rim."""
     return np.array([[round(65535 * _height(column - SIDE // 2, SIDE // 2 - row) / TALLEST)
                       for column in range(SIDE)] for row in range(SIDE)], np.uint16)
 
 
 def _height(x: float, y: float) -> float:
-    """Of the bowl, m."""
+    """Height of the bowl, m."""
     out = min(1.0, max(0.0, (math.hypot(x, y) - FLAT) / (SIDE / 2)))
     waves = math.sin(x / 7) * math.cos(y / 9)
     return (7.5 + waves) * out * out * (3 - 2 * out)
 
 
 def files() -> dict[str, str]:
-    """What the script writes: text by name in data/worlds."""
+    """The files that the script writes: text by name in data/worlds."""
     return {"rubble.world": rubble(), "stacks.world": stacks()}
 
 

@@ -44,7 +44,7 @@ def test_a_picture_that_is_too_large_is_drawn_smaller(renderer, caplog, width, h
     assert (eye.description.width, eye.description.height) == used
     assert (eye.view().width, eye.view().height) == used
     assert (f"sensor eye of robot::link: an image of {width}x{height} px is not drawn, at most "
-            f"8192 a side and 4096x4096 in all are; {used[0]}x{used[1]} is used") in caplog.text
+            f"8192 per side and 4096x4096 in all; {used[0]}x{used[1]} is used") in caplog.text
 
 
 def test_memory_of_pictures_is_given_back():

@@ -164,7 +164,7 @@ def test_what_the_engine_prints_is_not_seen_and_what_follows_is(capfd):
 
 def test_a_text_that_the_engine_refuses_is_our_own_error(world, monkeypatch):
     monkeypatch.setattr("bullet_sim.physics.client.urdf_text", lambda *_: "nonsense")
-    with pytest.raises(SimulationError, match="the engine refuses link a and what hangs on it"):
+    with pytest.raises(SimulationError, match="the engine rejects link a and the links below it"):
         world.spawn(read('<model name="m"><link name="a"/></model>'))
     assert_empty(world)
 

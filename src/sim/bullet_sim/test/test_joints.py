@@ -489,7 +489,7 @@ def test_a_joint_with_a_name_that_the_engine_cannot_hold_is_refused(name):
     size = len(name.encode())
     world = World(WorldDescription())
     try:
-        with pytest.raises(SimulationError, match=f"names of 1023 bytes, not one of {size}: "):
+        with pytest.raises(SimulationError, match=f"names of at most 1023 bytes, not of {size}: "):
             world.spawn(read(link("a") + link("b") + joint(
                 name, "revolute", "a", "b", axis("0 0 1"))))
     finally:

@@ -175,7 +175,7 @@ def test_too_many_rays_are_thinned_over_the_same_angles(world, caplog):
     assert made.shape == (316, 316)
     assert (made.azimuths[0], made.azimuths[-1]) == (-0.5, 0.5)
     assert (made.elevations[0], made.elevations[-1]) == (-0.2, 0.2)
-    assert "has 1000 x 1000 rays, and more than 100000 are not cast: 316 x 316" in caplog.text
+    assert "has 1000 x 1000 rays, but at most 100000 are cast: 316 x 316" in caplog.text
 
 
 @pytest.mark.parametrize("asked, cast", [

@@ -1,1 +1,1 @@
-"""Mapping, localisation, costmaps and planning. No ROS in here: arrays in, arrays out."""
+"""Mapping, localisation, costmaps and planning. No ROS here: arrays in, arrays out."""

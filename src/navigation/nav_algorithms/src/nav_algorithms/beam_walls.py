@@ -1,4 +1,4 @@
-"""What each beam of a scan says of the wall where it ended: which way the wall goes."""
+"""The direction of the wall that each beam of a scan hit, from the ends of neighbouring beams."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 from nav_algorithms.compiled import compiled
 
 SPAN = 0.15        # m to either side in which a beam's neighbours are on its wall
-LEAST = 3          # neighbours to either side that are looked at, however far
+LEAST = 3          # neighbours to either side that are used in any case, however far
 STEEP = 5.0        # neighbours farther apart than this, in widths of a beam, are on two walls
-NOISE = 0.05       # m; neighbours that near are on one wall at any rate
-ALONG = 0.002      # how much a beam holds along a smooth wall; across it 1
-SMOOTH, ROUND = 0.05, 0.25  # scatter across as a share of that along: a wall, a corner or a post
+NOISE = 0.05       # m; neighbours as near as this are always on one wall
+ALONG = 0.002      # weight of a beam along a smooth wall; across it the weight is 1
+SMOOTH, ROUND = 0.05, 0.25  # scatter across relative to along the wall: a wall, a corner or a post
 
 
 @compiled("b1(f8[:,::1], f8[::1], f8, i8, i8)")
@@ -27,8 +27,8 @@ def _linked(ends: np.ndarray, ranges: np.ndarray, width: float, i: int, j: int) 
 def holds(ends: np.ndarray, ranges: np.ndarray, width: float) -> np.ndarray:
     """How much each beam holds the robot, (N, 3): xx, xy, yy of a matrix in the frame of `ends`.
 
-    Its value is 1 across the wall and ALONG along it; 1 both ways at corners and posts. `ends`
-    (N, 2) and `ranges` (N,), m, in the order of their angles; `width`, rad, between two beams.
+    Its value is 1 across the wall and ALONG along it; 1 in both directions at corners and posts.
+    `ends` (N, 2) and `ranges` (N,), m, sorted by angle; `width`, rad, between neighbouring beams.
     """
     count = len(ends)
     found = np.empty((count, 3))
@@ -52,7 +52,7 @@ def holds(ends: np.ndarray, ranges: np.ndarray, width: float) -> np.ndarray:
         if number >= 3:
             share = (middle - spread) / (middle + spread)
             along = min(1.0, max(ALONG, (share - SMOOTH) / (ROUND - SMOOTH)))
-        # The matrix is 1 - (1 - along) t t^T, with t along the wall.
+        # The matrix is 1 - (1 - along) t t^T, where t is the wall's direction.
         turn = 0.5 * math.atan2(xy, 0.5 * (xx - yy))
         cos, sin = math.cos(turn), math.sin(turn)
         found[i, 0] = 1.0 - (1.0 - along) * cos * cos

@@ -1,4 +1,4 @@
-"""Where the cells of a plane lie: what maps and costmaps have in common."""
+"""The geometry of a grid of cells, shared by maps and costmaps."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 class Cells:
-    """Has `cells` (rows, columns), `resolution`, m a cell, and `origin`, (x, y), m.
+    """Has `cells` (rows, columns), `resolution`, m per cell, and `origin`, (x, y), m.
 
     The origin is the outer corner of cell (0, 0); row 0 has the lowest y and column 0 the lowest x.
     """
@@ -16,7 +16,7 @@ class Cells:
     origin: tuple[float, float]
 
     def check_geometry(self, what: str, kind: type) -> None:
-        """Raises ValueError for cells not of that kind, or sizes that make no `what` ("map")."""
+        """Raises ValueError if cells (of dtype `kind`) or sizes make no valid `what` ("map")."""
         if self.cells.ndim != 2 or self.cells.dtype != kind:
             raise ValueError(f"cells of a {what} are {np.dtype(kind)} (rows, columns), "
                              f"not {self.cells.dtype} {self.cells.shape}")
@@ -26,9 +26,9 @@ class Cells:
             raise ValueError(f"a {what}'s origin is two finite numbers, not {self.origin}")
 
     def cells_of(self, points: np.ndarray) -> np.ndarray:
-        """(row, column), int64 (..., 2), of points (..., 2), m; may lie outside."""
+        """(row, column), int64 (..., 2), of points (..., 2), m; may be outside."""
         points = np.asarray(points, float)
-        with np.errstate(invalid="ignore"):  # what is too far for a number lies outside, too
+        with np.errstate(invalid="ignore"):  # points too far away for an integer are outside, too
             found = np.floor((points - self.origin) / self.resolution).astype(np.int64)
         return found[..., ::-1]
 
@@ -37,6 +37,6 @@ class Cells:
         return (np.asarray(cells)[..., ::-1] + 0.5) * self.resolution + self.origin
 
     def contains(self, cells: np.ndarray) -> np.ndarray:
-        """Which (row, column) of (..., 2) lie inside, bool (...)."""
+        """Which of the cells (row, column), (..., 2), are inside, bool (...)."""
         cells = np.asarray(cells)
         return ((cells >= 0) & (cells < self.cells.shape)).all(axis=-1)

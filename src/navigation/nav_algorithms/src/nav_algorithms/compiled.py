@@ -1,4 +1,4 @@
-"""The one way in which this package compiles its inner loops."""
+"""How this package compiles its inner loops with Numba."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ OURS = re.compile(rf"^from {PACKAGE.name}(?:\.([\w.]+))? import (\([^)]*\)|.*)",
 
 
 def compiled(signature: str) -> Callable[[Callable], Callable]:
-    """Decorator: machine code for one signature, at import, kept beside the source of a checkout.
+    """Decorator: compiles for one signature at import and caches next to the source of a checkout.
 
-    `signature` is Numba's, such as "f8(f8[:,::1], i8)". The first import compiles, every later one
-    reads what was kept: a node that compiled when its first scan came would miss many. The lock is
-    let go while it runs. No fast-math and no threads: the same input gives the same bits.
+    `signature` is Numba's, such as "f8(f8[:,::1], i8)". The first import compiles, later ones load
+    the cache: a node that compiled at its first scan would miss many scans. The GIL is released
+    while the code runs. No fast-math and no threads: the same input gives the same bits.
     """
     def compile_one(function: Callable) -> Callable:
         usual = numba.config.CACHE_LOCATOR_CLASSES
@@ -36,31 +36,31 @@ def compiled(signature: str) -> Callable[[Callable], Callable]:
 
 
 class _StampOfAllSources:
-    """What was kept is stale when a file that this one imports from has changed, too.
+    """The cache is stale if the function's file or a file that it imports from has changed.
 
-    Numba looks at the function's own file only, but machine code holds copies of what it calls.
+    Numba only checks the function's own file, but machine code contains copies of what it calls.
     """
 
     def get_source_stamp(self) -> str:
-        """Of the text of the function's file and of all of ours that it leads to."""
+        """A hash of the function's file and of all files of this package that it depends on."""
         files = sorted(_sources(Path(self._py_file)))
         return hashlib.sha256(b"".join(_text(file).encode() for file in files)).hexdigest()
 
 
 class BesideSource(_StampOfAllSources, caching.InTreeCacheLocator):
-    """In __pycache__ beside the source of a checkout; where it is installed nobody writes."""
+    """Caches in __pycache__ next to the source of a checkout; never writes into an install."""
 
     @classmethod
     def from_function(cls, py_func: Callable, py_file: str) -> BesideSource | None:
-        """None where it cannot be kept there."""
+        """None if the cache cannot be there."""
         return None if INSTALLED in PACKAGE.parts else super().from_function(py_func, py_file)
 
 
 class InHome(_StampOfAllSources, caching.UserWideCacheLocator):
-    """In the user's cache folder, where the source's folder is not ours to write in."""
+    """Caches in the user's cache folder, if the source's folder is not writable."""
 
     def ensure_cache_path(self) -> None:
-        """Make the folder; what is compiled then for the first time takes a while, so say so."""
+        """Make the folder; the first compilation takes a while, so print a line about it."""
         folder = Path(self.get_cache_path())
         if not folder.exists():
             _say_once(folder.parent)
@@ -82,7 +82,7 @@ def _sources(file: Path) -> set[Path]:
 
 
 def _imported(file: Path) -> set[Path]:
-    """Where modules of ours that it imports, or imports from, would be."""
+    """Paths of this package's modules that it may import, or import from; not all of them exist."""
     paths = set()
     for module, names in OURS.findall(_text(file)):
         folder = PACKAGE / module.replace(".", "/")

@@ -1,4 +1,4 @@
-"""What many weighted particles say: one pose and how sure it is."""
+"""The estimate from weighted particles: a pose and its covariance."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import numpy as np
 
 from nav_algorithms.particle_bins import clusters_of
 
-TOGETHER = 0.5  # m; amcl's bound of how far converged particles may be from their mean, in x and y
+TOGETHER = 0.5  # m; amcl's limit, in x and y, of converged particles' distance from their mean
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """`pose` (3,) is the mean of the heaviest cluster, `covariance` (3, 3) is of all particles.
+    """`pose` (3,) is the mean of the cluster with the most weight, `covariance` (3, 3) is of all.
 
-    `share` of all weight is in that cluster.
+    `share` is that cluster's share of all weight.
     """
 
     pose: np.ndarray
@@ -24,7 +24,7 @@ class Estimate:
 
 
 def estimate(particles: np.ndarray, weights: np.ndarray) -> Estimate:
-    """Of particles (N, 3) with weights (N,) that sum up to 1."""
+    """The estimate from particles (N, 3) with weights (N,) that sum up to 1."""
     clusters = clusters_of(particles)
     sums = np.bincount(clusters, weights)
     heaviest = int(np.argmax(sums))
@@ -34,9 +34,9 @@ def estimate(particles: np.ndarray, weights: np.ndarray) -> Estimate:
 
 
 def _moments(particles: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and covariance; that of yaw is the circular one, -2 ln of the mean direction's length.
+    """Mean and covariance; yaw's variance is circular, -2 ln of the mean direction's length.
 
-    As in amcl, yaw is taken to vary alone.
+    As in amcl, yaw is taken as uncorrelated.
     """
     places = particles[:, :2]
     mean = weights @ places
@@ -48,5 +48,5 @@ def _moments(particles: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np
 
 
 def have_converged(particles: np.ndarray) -> bool:
-    """Whether particles (N, 3) are all in one place."""
+    """Whether all particles (N, 3) are within TOGETHER of their mean, in x and y."""
     return bool((np.abs(particles[:, :2] - particles[:, :2].mean(axis=0)) <= TOGETHER).all())

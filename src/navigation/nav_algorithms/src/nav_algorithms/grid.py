@@ -1,4 +1,4 @@
-"""Occupancy grids: what a map is to every other module here."""
+"""Occupancy grids: the map type of all modules here."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ UNKNOWN, FREE, OCCUPIED = -1, 0, 100  # nav_msgs/OccupancyGrid; between them: pr
 
 @dataclass(frozen=True)
 class OccupancyGrid(Cells):
-    """Cells of a plane; never changed in place once made.
+    """Cells in a plane; never changed in place once made.
 
     `cells` is int8 (rows, columns), UNKNOWN, or FREE to OCCUPIED; row 0 has the lowest y and
-    column 0 the lowest x, as in nav_msgs/OccupancyGrid. `resolution` is in m a cell, `origin` the
-    (x, y), m, of the outer corner of cell (0, 0) in the map's frame; maps are not turned.
+    column 0 the lowest x, as in nav_msgs/OccupancyGrid. `resolution` is in m per cell, `origin` the
+    (x, y), m, of the outer corner of cell (0, 0) in the map's frame, whose axes the cells follow.
     """
 
     cells: np.ndarray
@@ -25,5 +25,5 @@ class OccupancyGrid(Cells):
     origin: tuple[float, float]
 
     def __post_init__(self) -> None:
-        """Raises ValueError for cells or sizes that make no map."""
+        """Raises ValueError if cells or sizes make no valid map."""
         self.check_geometry("map", np.int8)

@@ -1,8 +1,8 @@
-"""Where laser beams ended, kept once for many particles that mostly agree.
+"""Maps of laser hits for many particles, which share what they agree on.
 
-Each particle's map is a table of patches, and a patch is copied only when one of several owners
-writes to it. A cell holds how many beams ended in it and the mean of their ends, so walls are
-known finer than the cells are.
+Each particle's map is a table of patches; a patch is copied only when one of several owners
+writes to it. A cell stores the number of beams that ended in it and the mean of their ends, so
+walls are known more precisely than to a cell.
 """
 
 from __future__ import annotations
@@ -12,15 +12,15 @@ import numpy as np
 from nav_algorithms.compiled import compiled
 
 PATCH = 16         # cells along an edge of a patch
-HITS, SUM_ROW, SUM_COLUMN, NEAR = range(4)  # what a cell holds, float32
-MOST_HITS = 200.0  # hits of a cell after which its mean stays as it is
+HITS, SUM_ROW, SUM_COLUMN, NEAR = range(4)  # the values of a cell, float32
+MOST_HITS = 200.0  # hits of a cell after which its mean no longer changes
 ON_WALL, BESIDE_WALL = 2.0, 1.0  # values of NEAR; 0 elsewhere
 ABSENT = -1
 
 
 @compiled("i8(i4[:,::1], i8, i8)")
 def patch_at(table: np.ndarray, row: int, column: int) -> int:
-    """The patch that holds a cell, or ABSENT."""
+    """The patch that contains a cell, or ABSENT."""
     patch_row, patch_column = row // PATCH, column // PATCH
     if 0 <= patch_row < table.shape[0] and 0 <= patch_column < table.shape[1]:
         return table[patch_row, patch_column]
@@ -29,7 +29,7 @@ def patch_at(table: np.ndarray, row: int, column: int) -> int:
 
 @compiled("f4(i4[:,::1], f4[:,:,:,::1], i8, i8, i8)")
 def value_at(table: np.ndarray, pool: np.ndarray, row: int, column: int, what: int) -> float:
-    """What a cell holds: HITS or NEAR; 0 outside the map."""
+    """A value of a cell: HITS or NEAR; 0 outside the map."""
     patch = patch_at(table, row, column)
     if patch == ABSENT:
         return np.float32(0.0)
@@ -39,7 +39,7 @@ def value_at(table: np.ndarray, pool: np.ndarray, row: int, column: int, what: i
 @compiled("i8(i4[:,::1], f4[:,:,:,::1], i4[::1], i4[::1], i8[::1], i8, i8)")
 def _own_patch(table: np.ndarray, pool: np.ndarray, owners: np.ndarray, free: np.ndarray,
                free_count: np.ndarray, row: int, column: int) -> int:
-    """The patch that holds a cell, made or copied where it is not this table's alone."""
+    """The patch that contains a cell; made or copied if it is not this table's alone."""
     patch = patch_at(table, row, column)
     if patch != ABSENT and owners[patch] == 1:
         return patch
@@ -58,7 +58,7 @@ def _own_patch(table: np.ndarray, pool: np.ndarray, owners: np.ndarray, free: np
 @compiled("void(i4[:,::1], f4[:,:,:,::1], i4[::1], i4[::1], i8[::1], f8, f8)")
 def _add_hit(table: np.ndarray, pool: np.ndarray, owners: np.ndarray, free: np.ndarray,
              free_count: np.ndarray, x: float, y: float) -> None:
-    """One beam ended at (x, y), in cells."""
+    """Add a beam that ended at (x, y), in cells."""
     row, column = int(np.floor(y)), int(np.floor(x))
     if value_at(table, pool, row, column, HITS) >= MOST_HITS:
         return
@@ -83,9 +83,9 @@ def _add_hit(table: np.ndarray, pool: np.ndarray, owners: np.ndarray, free: np.n
 def _add_scans(tables: np.ndarray, pool: np.ndarray, owners: np.ndarray, free: np.ndarray,
                free_count: np.ndarray, poses: np.ndarray, points: np.ndarray, first: int,
                needed: int) -> int:
-    """Adds the points to each table from its pose on; the table that lacks room, or their number.
+    """Add the points to each table at its pose; returns the table that lacks room, or their number.
 
-    In cells. A table begins only when `needed` patches are free.
+    All in cells. A table is only begun if `needed` patches are free.
     """
     for i in range(first, len(poses)):
         if free_count[0] < needed:
@@ -101,7 +101,7 @@ def _add_scans(tables: np.ndarray, pool: np.ndarray, owners: np.ndarray, free: n
 class HitMaps:
     """The maps of all particles.
 
-    `tables` int32 (particles, patch rows, patch columns) into `pool` float32 (patches, PATCH,
+    `tables` int32 (particles, patch rows, patch columns) index `pool` float32 (patches, PATCH,
     PATCH, 4). Cell (0, 0) of the tables begins at `origin` (x, y), m; it moves when they grow.
     """
 
@@ -125,7 +125,7 @@ class HitMaps:
         return found
 
     def add(self, poses: np.ndarray, points: np.ndarray) -> None:
-        """Beams that ended at `points` (N, 2), m, in the frame of each of `poses` (count, 3)."""
+        """Add beams that ended at `points` (N, 2), m, in the frame of each pose (count, 3)."""
         if not len(points):
             return
         reach = float(np.hypot(points[:, 0], points[:, 1]).max()) + 2 * self.resolution
@@ -140,7 +140,7 @@ class HitMaps:
                               self._free_count, cells, ends, done, needed)
 
     def choose(self, chosen: np.ndarray) -> None:
-        """Particle i goes on with the map of particle chosen[i]."""
+        """Particle i continues with the map of particle chosen[i]."""
         self.tables = np.ascontiguousarray(self.tables[chosen])
         used = self.tables[self.tables != ABSENT]
         self._owners = np.bincount(used, minlength=len(self.pool)).astype(np.int32)
@@ -159,7 +159,7 @@ class HitMaps:
         self._free_count[0] += more
 
     def _cover(self, lower: np.ndarray, upper: np.ndarray) -> None:
-        """Makes the tables larger, by whole patches, until they reach from lower to upper, m."""
+        """Enlarge the tables, by whole patches, until they reach from lower to upper, m."""
         patch = PATCH * self.resolution
         rows, columns = self.tables.shape[1:]
         before = np.maximum(0, np.ceil((self.origin - lower) / patch)).astype(int)

@@ -1,8 +1,8 @@
-"""How far each cell is from the nearest occupied one: exact, in time linear in the cells.
+"""The distance from each cell to the nearest occupied one: exact, in time linear in the cells.
 
 P. Felzenszwalb and D. Huttenlocher, "Distance transforms of sampled functions" (2012): along each
 column the distance to the nearest occupied cell, then along each row the lower envelope of the
-parabolas that stand on those distances' squares.
+parabolas with the squares of those distances as their minimums.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from nav_algorithms.compiled import compiled
 
 @compiled("void(u1[:,::1], f8[:,::1])")
 def _squares_along_columns(occupied: np.ndarray, squares: np.ndarray) -> None:
-    """Squared distance within its column of each cell from an occupied one, in cells."""
+    """Squared distance of each cell to an occupied one within its column, in cells."""
     rows, columns = occupied.shape
     for column in range(columns):
         way = math.inf
@@ -31,9 +31,9 @@ def _squares_along_columns(occupied: np.ndarray, squares: np.ndarray) -> None:
 
 @compiled("i8(f8[::1], i8[::1], f8[::1])")
 def _envelope(heights: np.ndarray, feet: np.ndarray, starts: np.ndarray) -> int:
-    """Lower envelope of the parabolas heights[i] + (x - i)^2: how many are in it.
+    """Lower envelope of the parabolas heights[i] + (x - i)^2; returns how many are in it.
 
-    `feet` gets their places, `starts` the x from which each of them is the lowest.
+    `feet` gets their positions, `starts` the x from which each of them is the lowest.
     """
     count = 0
     for i in range(heights.size):
@@ -56,7 +56,7 @@ def _envelope(heights: np.ndarray, feet: np.ndarray, starts: np.ndarray) -> int:
 def distances(occupied: np.ndarray) -> np.ndarray:
     """Distance (rows, columns), in cells, from each cell's centre to the nearest occupied one's.
 
-    `occupied` (rows, columns) is not 0 there; where nothing is occupied all distances are inf.
+    `occupied` (rows, columns) is not 0 there; if no cell is occupied, all distances are inf.
     """
     rows, columns = occupied.shape
     found = np.empty((rows, columns))

@@ -13,12 +13,12 @@ from nav_algorithms.poses import invert, transform_points
 
 @dataclass(frozen=True)
 class MapAgreement:
-    """Shares, 0 to 1. Near is: in the same cell of the grid that is looked at, or in one of 8."""
+    """Shares, 0 to 1. Near means: in the same cell of the other grid, or in one of 8 around it."""
 
-    occupied_near_walls: float  # of the built map's occupied cells: near a true wall
-    walls_found: float          # of the true wall cells that were seen: near an occupied cell
+    occupied_near_walls: float  # share of the built map's occupied cells near a true wall
+    walls_found: float          # share of the true wall cells seen that are near an occupied cell
     occupied_cells: int         # of the built map
-    wall_cells: int             # of the truth, seen
+    wall_cells: int             # of the true map, seen
 
     def __str__(self) -> str:
         return (f"{self.occupied_near_walls:.1%} of the map's {self.occupied_cells} occupied cells "
@@ -31,10 +31,10 @@ def map_agreement(built: OccupancyGrid, truth: OccupancyGrid, seen: np.ndarray |
                   occupied_from: int = 65) -> MapAgreement:
     """Compare a built map with true_map's; a share of nothing is 0.
 
-    `seen`, bool of the truth's shape (visible_walls), says which walls the laser could see; by
-    default those are taken that lie beside what the built map calls known, which asks less: a wall
-    that was seen but left unknown on both sides is not asked for. `built_in_truth` (3,) is the pose
-    of the built map's frame in the truth's. Cells from `occupied_from` percent on are occupied.
+    `seen`, bool of the truth's shape (visible_walls), says which walls the laser could see; the
+    default is walls next to known cells of the built map, which is less strict: a wall that was
+    seen but left unknown on both sides does not count. `built_in_truth` (3,) is the pose of the
+    built map's frame in the truth's. Cells of at least `occupied_from` percent are occupied.
     """
     occupied = built.cells >= occupied_from
     walls = truth.cells == OCCUPIED
@@ -51,12 +51,12 @@ def map_agreement(built: OccupancyGrid, truth: OccupancyGrid, seen: np.ndarray |
 
 def _are_near(grid: OccupancyGrid, which: np.ndarray, other: OccupancyGrid, wanted: np.ndarray,
               grid_in_other: np.ndarray) -> np.ndarray:
-    """Which of the cells `which` of `grid` lie near one of `wanted` of `other`, bool."""
+    """Which of the cells `which` of `grid` are near one of `wanted` of `other`, bool."""
     chosen = np.argwhere(which)
     cells = other.cells_of(transform_points(grid_in_other, grid.centres_of(chosen)))
     inside = other.contains(cells)
     near = np.zeros(which.shape, bool)
-    hit = (distances(wanted.astype(np.uint8)) < 1.5)[tuple(cells[inside].T)]  # cells, or beside
+    hit = (distances(wanted.astype(np.uint8)) < 1.5)[tuple(cells[inside].T)]  # cells, or next to it
     near[tuple(chosen[inside][hit].T)] = True
     return near
 

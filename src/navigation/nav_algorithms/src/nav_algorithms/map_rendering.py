@@ -1,4 +1,4 @@
-"""The map that a path and its scans make: how often each cell was looked through, and was hit."""
+"""The map of a path and its scans: how often beams passed through each cell, and ended in it."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from nav_algorithms.compiled import compiled
 from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.rays import count_between
 
-MARGIN = 2.0  # m; how far a grid that proves too small is made larger than it need be
+MARGIN = 2.0  # m; extra size of a grid that has to be enlarged
 
 
 @compiled("void(i4[:,::1], i4[:,::1], f8[:,::1], b1[::1], f8, f8, f8, f8, f8, i8)")
 def _count_scan(passes: np.ndarray, hits: np.ndarray, ends: np.ndarray, is_hit: np.ndarray,
                 column: float, row: float, yaw: float, laser_x: float, laser_y: float,
                 sign: int) -> None:
-    """Adds (sign 1) or takes away (sign -1) a scan. In cells."""
+    """Add (sign 1) or remove (sign -1) a scan. In cells."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     from_column = int(np.floor(column + cos * laser_x - sin * laser_y))
     from_row = int(np.floor(row + sin * laser_x + cos * laser_y))
@@ -28,7 +28,7 @@ def _count_scan(passes: np.ndarray, hits: np.ndarray, ends: np.ndarray, is_hit: 
 
 
 class MapRendering:
-    """Counts of one path, brought up to date with as few scans as the path's change needs."""
+    """Counts for one path, updated with as few scans as the path's change needs."""
 
     def __init__(self, resolution: float, lower: tuple[float, float],
                  upper: tuple[float, float]) -> None:
@@ -43,7 +43,7 @@ class MapRendering:
 
     def follow(self, poses: np.ndarray, numbers: np.ndarray,
                scans: list[tuple[np.ndarray, np.ndarray]], laser: np.ndarray) -> None:
-        """Makes this the map of scans[numbers[i]] taken at poses[i], (N, 3).
+        """Make this the map of scans[numbers[i]] taken at poses[i], (N, 3).
 
         A scan is (ends (M, 2) of its beams in the robot's frame, m, which of them hit, bool (M,));
         the laser is at `laser` (x, y) in that frame, m.
@@ -59,7 +59,7 @@ class MapRendering:
         self._poses, self._scans = poses, numbers
 
     def grid(self, threshold: float) -> OccupancyGrid:
-        """OCCUPIED where more than `threshold` of the beams that came to a cell ended in it."""
+        """OCCUPIED where more than `threshold` of the beams that reached a cell ended in it."""
         seen = self._passes + self._hits
         cells = np.where(self._hits > threshold * seen, OCCUPIED, FREE)
         return OccupancyGrid(np.where(seen > 0, cells, UNKNOWN).astype(np.int8), self._resolution,
@@ -77,7 +77,7 @@ class MapRendering:
                     pose[2], *(laser / self._resolution), sign)
 
     def _cover(self, lower: np.ndarray, upper: np.ndarray) -> None:
-        """Makes the grid larger, by whole cells, when it does not reach from lower to upper."""
+        """Enlarge the grid, by whole cells, if it does not reach from lower to upper."""
         end = self._origin + self._resolution * np.array(self._passes.shape[::-1])
         margin = MARGIN / self._resolution
         before = np.ceil((self._origin - lower) / self._resolution)

@@ -1,9 +1,9 @@
-"""Where a robot is on a map: Monte Carlo localisation with as many particles as it takes.
+"""Monte Carlo localisation on a map, with as many particles as needed.
 
 S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), 8.3: KLD-sampling, and random poses
-when the scans fit worse than they used to. As in amcl, with these differences: particles are drawn
-with low variance, and the averages that tell of a lost robot are of the scans alone, not of the
-number of particles. How many poses are drawn anew, and where, are parameters (see amcl's table).
+when the scans fit worse than before. As in amcl, with these differences: particles are drawn
+with low variance, and the averages that reveal a lost robot depend on the scans alone, not on
+the number of particles. How many random poses are drawn, and where, are parameters (see amcl's).
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from nav_algorithms.sensor_models import LaserModel, Scan, SensorSettings
 
 @dataclass(frozen=True)
 class LocalisationSettings:
-    """amcl's parameters by its names; m, rad. The last six are ours.
+    """amcl's parameters by its names; m, rad. The last six are additions.
 
-    A passer-by makes scans fit worse, too: hence `lost_threshold`; poses that fit where the map
-    looks alike must win by what is seen later, not by how many were drawn: `lost_share_max`. Where
-    a robot starts anywhere the right place may have been given up too early: `search_share`.
+    `lost_threshold`: a passer-by makes scans fit worse, too. `lost_share_max`: where the map looks
+    alike, poses must win by later scans, not by how many were drawn. `search_share`: if a robot may
+    start anywhere, the right place may have been given up too early.
     """
 
     min_particles: int
@@ -54,28 +54,28 @@ class LocalisationSettings:
 
     @property
     def alphas(self) -> np.ndarray:
-        """(5,), as motion_models take them."""
+        """The alphas (5,) for motion_models."""
         return np.array([getattr(self, f"odom_alpha{i}") for i in range(1, 6)])
 
 
 @dataclass(frozen=True)
 class Step:
-    """What came of one scan: whether it was weighed, and whether the estimate is a new one."""
+    """The result of one scan: whether it was weighed, and whether the estimate is new."""
 
     weighed: bool
     estimated: bool
 
 
 class Localisation:
-    """The particles on one map; scans come in the order of their time.
+    """The particles on one map; scans are added in the order of their time.
 
     `particles` (N, 3), m and rad in the map's frame, and `weights` (N,), which sum up to 1;
-    `estimate` is of them, and `map_to_odom` (3,) the odometry's frame as it puts it on the map.
+    `estimate` is of them, and `map_to_odom` (3,) is the resulting pose of the odometry's frame.
     """
 
     def __init__(self, grid: OccupancyGrid, settings: LocalisationSettings,
                  sensor: SensorSettings, random: np.random.Generator) -> None:
-        """Lost: call start_at or start_anywhere."""
+        """Starts at the origin: call start_at or start_anywhere."""
         self._settings = settings
         self._random = random
         self._model = LaserModel(grid, sensor)
@@ -83,14 +83,14 @@ class Localisation:
         self.start_at(np.zeros(3), np.zeros((3, 3)))
 
     def start_at(self, mean: np.ndarray, covariance: np.ndarray) -> None:
-        """At a pose (3,) that is known up to a covariance (3, 3)."""
+        """Start at a pose (3,) known with a covariance (3, 3)."""
         deviates = self._random.standard_normal((self._settings.max_particles, 3))
         values, axes = np.linalg.eigh(covariance)
         spread = axes * np.sqrt(np.maximum(values, 0.0))
         self._start(np.asarray(mean, float) + deviates @ spread.T)
 
     def start_anywhere(self) -> None:
-        """Anywhere on the free cells, looking anywhere; the first scan says where rather."""
+        """Start anywhere on the free cells, with any yaw; the first scan chooses fitting poses."""
         self._start(self._places.draw(self._settings.max_particles))
         self._anywhere = True
 
@@ -100,15 +100,15 @@ class Localisation:
         self.weights = np.full(len(particles), 1 / len(particles))
         self.estimate: Estimate = estimate(self.particles, self.weights)
         self._averages = {"slow": 0.0, "fast": 0.0}
-        self._fresh = 0  # how many, the last ones, are random poses
+        self._fresh = 0  # how many of the particles, at the end, are random poses
         self._odometry: np.ndarray | None = None
-        self._lasers: dict[str, bool] = {}  # whether the next scan of each is to be weighed
+        self._lasers: dict[str, bool] = {}  # by laser: whether its next scan is to be weighed
         self._wanted = self._anywhere = False
         self._weighed = 0
         self.map_to_odom = np.zeros(3)
 
     def weigh_next(self) -> None:
-        """The next scan is weighed though the robot may stand."""
+        """Weigh the next scan even if the robot has not moved."""
         self._wanted = True
 
     def jump_to(self, odometry: np.ndarray) -> None:
@@ -119,13 +119,13 @@ class Localisation:
             self._odometry = np.asarray(odometry, float)
 
     def add(self, odometry: np.ndarray, scan: Scan, laser: str = "") -> Step:
-        """A scan by the laser of that name, taken where the odometry was at `odometry` (3,)."""
+        """Add a scan by the laser of that name, taken at the odometry's pose `odometry` (3,)."""
         odometry = np.asarray(odometry, float)
         self._lasers.setdefault(laser, True)
         first = self._odometry is None
         if first or self._has_moved(odometry) or self._wanted:
             self._lasers = dict.fromkeys(self._lasers, True)
-            self._wanted = self._wanted and first  # as upstream: a new start's scan does not count
+            self._wanted = self._wanted and first  # as upstream: not used up by the first scan
         if not self._lasers[laser]:
             return Step(weighed=False, estimated=False)
         self._lasers[laser] = False
@@ -159,7 +159,7 @@ class Localisation:
         old = slice(len(self.particles) - self._fresh)  # random poses fit badly and prove nothing
         total = self.weights[old].sum()
         part = fit.parts[old] @ self.weights[old] / total if total > 0.0 else 0.0
-        weights = self.weights * np.exp(fit.logs - fit.logs.max())  # however badly the scan fits
+        weights = self.weights * np.exp(fit.logs - fit.logs.max())  # also for very bad fits
         self.weights = weights / weights.sum()
         self._weighed += 1
         for name in ("slow", "fast"):
@@ -197,7 +197,7 @@ class Localisation:
             self._averages = dict.fromkeys(self._averages, 0.0)
         count = particles_needed(bins_of(drawn), settings.kld_err, settings.kld_z,
                                  min(settings.min_particles, most), most)
-        # As many as these are enough; those from the particles are drawn again, evenly spaced.
+        # This many are enough; those from the particles are drawn again, evenly spaced.
         fresh = drawn[anew[anew < count]]
         kept = count - len(fresh)
         evenly = (np.arange(kept) + random.random()) / max(kept, 1)
@@ -207,5 +207,5 @@ class Localisation:
 
 
 def _at(sums: np.ndarray, shares: np.ndarray) -> np.ndarray:
-    """Whose weights, summed up, each share (0 to 1) of their sum falls into."""
+    """Indices of the weights (cumulative sums `sums`) at each share (0 to 1) of their total."""
     return np.minimum(np.searchsorted(sums, shares * sums[-1], side="right"), len(sums) - 1)

@@ -1,8 +1,8 @@
-"""Particles sorted into bins of their space: how many are needed, and which belong together.
+"""Particles sorted into bins of poses: how many are needed, and their clusters.
 
 How many: D. Fox, "Adapting the sample size in particle filters through KLD-sampling" (2003). As in
-amcl, particles in bins that touch are one cluster; unlike there, the bins of yaw close a circle,
-and particles that are all in one bin need the least number, not the largest.
+amcl, particles in adjacent bins are one cluster; unlike there, the bins of yaw form a circle,
+and particles that are all in one bin need the minimum number, not the maximum.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def bins_of(particles: np.ndarray) -> np.ndarray:
 
 
 def particles_needed(bins: np.ndarray, error: float, z: float, least: int, most: int) -> int:
-    """How many of the particles drawn, whose bins (N,) are in the order of drawing, are enough.
+    """How many of the particles, whose bins (N,) are in the order of drawing, are enough.
 
     With a probability whose quantile of the normal distribution is `z`, their distribution is then
     within `error` of the true one. Between `least` and `most`, and at most N.
@@ -40,7 +40,7 @@ def particles_needed(bins: np.ndarray, error: float, z: float, least: int, most:
 
 
 def clusters_of(particles: np.ndarray) -> np.ndarray:
-    """The cluster of each particle (N, 3): int64 (N,) from 0 on."""
+    """The cluster of each particle (N, 3): int64 (N,), from 0."""
     bins, which = np.unique(bins_of(particles), return_inverse=True)
     return np.unique(_joined(bins), return_inverse=True)[1][which]
 
@@ -55,11 +55,11 @@ def _root(parents: np.ndarray, i: int) -> int:
 
 @compiled("i8[::1](i8[::1])")
 def _joined(bins: np.ndarray) -> np.ndarray:
-    """For each of the sorted bins the first of those that it is connected with."""
+    """For each of the sorted bins, the first bin that it is connected with."""
     parents = np.arange(bins.size)
     for i in range(bins.size):
         turn, place = bins[i] % TURNS, bins[i] // TURNS
-        for dx in range(2):  # those behind have looked this way already
+        for dx in range(2):  # the others were checked from the other side
             for dy in range(-1, 2):
                 for dturn in range(-1, 2):
                     beside = ((place + dx * _SPAN + dy) * TURNS + (turn + dturn) % TURNS)

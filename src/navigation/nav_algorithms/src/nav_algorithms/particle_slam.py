@@ -1,9 +1,9 @@
-"""Rao-Blackwellised particle SLAM: each particle is a path, and has the map that its path makes.
+"""Rao-Blackwellised particle SLAM: each particle is a path, with the map of that path.
 
 The design is that of G. Grisetti, C. Stachniss, W. Burgard, "Improved techniques for grid mapping
-with Rao-Blackwellized particle filters" (2007): a particle moves to a draw from what odometry and
-scan say together, and particles are drawn anew only when few of them carry the weight. Here that
-posterior is the Gaussian at the matched pose, and maps are shared until they differ.
+with Rao-Blackwellized particle filters" (2007): a particle is drawn from the posterior of odometry
+and scan, and resampling only happens when few particles carry the weight. Here that posterior is
+the Gaussian at the matched pose, and maps are shared until they differ.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from nav_algorithms.pose_tree import PoseTree
 from nav_algorithms.proposals import propose
 from nav_algorithms.slam_motion import StepSum
 
-SEARCHED = 2.5     # deviations of the odometry to either side that a search covers
-MOST_STEPS = 5     # of a search to either side
+SEARCHED = 2.5     # standard deviations of the odometry, to either side, that a search covers
+MOST_STEPS = 5     # of a search, to either side
 SEARCH_BEAMS = 90  # enough for a search
-MATCHED = 0.25     # cells; how far beams are from the walls where a scan matches: about 1 cm
+MATCHED = 0.25     # cells; deviation of beams from the walls for a matching scan: about 1 cm
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class SlamSettings:
 
 
 class ParticleSlam:
-    """Maps while it localises; the same scans, odometry and seed give the same bits."""
+    """Maps and localises; the same scans, odometry and seed give the same bits."""
 
     def __init__(self, settings: SlamSettings, seed: int = 0) -> None:
         self.settings = settings
@@ -83,10 +83,10 @@ class ParticleSlam:
 
     def add(self, stamp: float, odometry: np.ndarray, ranges: np.ndarray, angles: np.ndarray,
             laser: np.ndarray) -> bool:
-        """A scan; True if it was used: the first one, or one after enough way, turn or time.
+        """Add a scan; True if it was used: the first, or after enough distance, turn or time.
 
-        `odometry` (x, y, yaw) of the robot at `stamp`, s; `ranges`, m, at `angles`, rad, (N,) as
-        seen from `laser` (x, y, yaw) in the robot's frame; inf or nan where nothing was measured.
+        `odometry` (x, y, yaw) of the robot at `stamp`, s; `ranges`, m, at `angles`, rad, (N,), from
+        `laser` (x, y, yaw) in the robot's frame; inf or nan if nothing was measured.
         """
         odometry = np.array(odometry, float)
         if self._odometry is None:
@@ -115,19 +115,19 @@ class ParticleSlam:
 
     @property
     def pose(self) -> np.ndarray:
-        """(x, y, yaw) of the best particle, moved on by the odometry since the last used scan."""
+        """(x, y, yaw) of the best particle, moved by the odometry since the last used scan."""
         return pose_arithmetic.compose(self._poses[self.best], self._step.mean)
 
     @property
     def map_to_odom(self) -> np.ndarray:
-        """Where the odometry's frame is in the map's, (3,)."""
+        """The pose of the odometry's frame in the map's, (3,)."""
         if self._odometry is None:
             return np.zeros(3)
         return pose_arithmetic.compose(self.pose, pose_arithmetic.invert(self._odometry))
 
     @property
     def entropy(self) -> float:
-        """Of the particles' weights, nat."""
+        """The entropy of the particles' weights, nat."""
         weights = self._weights()
         return float(-(weights[weights > 0] * np.log(weights[weights > 0])).sum())
 
@@ -152,21 +152,21 @@ class ParticleSlam:
 
     def _ends(self, ranges: np.ndarray, angles: np.ndarray,
               laser: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Where the beams ended in the robot's frame, (N, 2), m, which of them hit, their lengths.
+        """Ends of the beams in the robot's frame, (N, 2), m, which of them hit, and their lengths.
 
-        A range beyond maxRange says nothing, one beyond maxUrange only that the way is free.
+        Ranges beyond maxRange are ignored; one beyond maxUrange only means that the way is free.
         """
         limit = min(self.settings.maxUrange, self.settings.maxRange)
         with np.errstate(invalid="ignore"):
             told = (ranges > 0.0) & (ranges <= self.settings.maxRange)
-        told &= np.isfinite(ranges) & np.isfinite(angles)  # maxRange may be inf: a driver's may be
+        told &= np.isfinite(ranges) & np.isfinite(angles)  # maxRange may be inf, as a driver's may
         ranges, angles = ranges[told], angles[told]
         usable = np.minimum(ranges, limit)
         ends = usable[:, None] * np.column_stack((np.cos(angles), np.sin(angles)))
         return pose_arithmetic.transform_points(laser, ends), ranges <= limit, usable
 
     def _advance(self, hits: np.ndarray, held: np.ndarray) -> None:
-        """Moves, weighs and, if few particles carry the weight, draws the particles anew."""
+        """Move, weigh and, if few particles carry the weight, resample the particles."""
         settings, maps, count = self.settings, self._maps, len(self._poses)
         noise = np.linalg.cholesky(self._step.covariance)
         steps = self._step.mean + self._random.normal(size=(count, 3)) @ noise.T
@@ -187,9 +187,9 @@ class ParticleSlam:
         self._resample()
 
     def _learn_odometry(self, errors: np.ndarray, factors: np.ndarray) -> None:
-        """From the odometry's `errors` (N, 3) that the particles found, in cells and rad.
+        """Learn from the odometry's `errors` (N, 3) that the particles found, in cells and rad.
 
-        Their mean: what a particle drew last time is its own error, not the odometry's.
+        Uses their mean: what a particle drew last time is its own error, not the odometry's.
         """
         found = factors[:, 0, 0] > 0
         if not found.all():
@@ -208,13 +208,13 @@ class ParticleSlam:
         return halves, sizes / (settings.delta, settings.delta, 1.0)
 
     def _informations(self) -> np.ndarray:
-        """Of each particle's step, (N, 3, 3), turned as the particle is, in cells and rad."""
+        """Each particle's information of the step, (N, 3, 3), in the map's frame, cells and rad."""
         turned, scale = self._turned(), np.diag([self.settings.delta, self.settings.delta, 1.0])
         information = scale @ np.linalg.inv(self._step.covariance) @ scale
         return np.ascontiguousarray(turned @ information @ turned.transpose(0, 2, 1))
 
     def _turned(self) -> np.ndarray:
-        """From each robot's frame to the map's, (N, 3, 3)."""
+        """Rotations from each robot's frame to the map's, (N, 3, 3)."""
         cos, sin = np.cos(self._poses[:, 2]), np.sin(self._poses[:, 2])
         turned = np.zeros((len(cos), 3, 3))
         turned[:, 0, 0], turned[:, 0, 1] = cos, -sin
@@ -226,7 +226,7 @@ class ParticleSlam:
         return weights / weights.sum()
 
     def _resample(self) -> None:
-        """Low-variance draw when the effective number of particles is below the threshold."""
+        """Low-variance resampling if the effective number of particles is below the threshold."""
         weights = self._weights()
         count = len(weights)
         if 1.0 / (weights**2).sum() >= self.settings.resampleThreshold * count:

@@ -1,8 +1,8 @@
-"""Poses that a lost robot may have: on free cells, and if wanted where its latest scan fits.
+"""Poses that a lost robot may have: on free cells, some of them where its latest scan fits.
 
-Drawing from what the sensor says instead of from nowhere is S. Lenser and M. Veloso's "Sensor
-resetting localization for poorly modelled mobile robots" (2000). In a house a random pose is within
-reach of the true one once in tens of thousands of draws, and a few hundred would wait for long.
+Drawing poses from sensor data instead of anywhere is S. Lenser and M. Veloso's "Sensor resetting
+localization for poorly modelled mobile robots" (2000). In a house, one in tens of thousands of
+random poses is near enough to the true one, and a few hundred per draw would take long.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from nav_algorithms.grid import FREE, OccupancyGrid
 from nav_algorithms.sensor_models import LaserModel, Scan
 
 TRIED = 60_000    # poses that a scan is compared with: in a house one every 10 degrees and 0.1 m^2
-BEAMS = 60        # of that scan, at most: so rough a look needs no more, and many more cost CPU
-SHARPNESS = 12.0  # power of the weights: above 1 because amcl's weights hardly tell poses apart
+BEAMS = 60        # of that scan, at most: enough for so rough a comparison, and more cost CPU
+SHARPNESS = 12.0  # exponent of the weights: above 1 because amcl's weights hardly distinguish poses
 
 
 class Places:
-    """Free cells of one map."""
+    """The free cells of one map."""
 
     def __init__(self, grid: OccupancyGrid, random: np.random.Generator) -> None:
-        """A map without free cells is taken for free wherever it is not occupied."""
+        """In a map without free cells, all cells that are not occupied count as free."""
         free = grid.cells == FREE
         self._corners = np.argwhere(free if free.any() else grid.cells <= FREE)[:, ::-1]
         if not len(self._corners):
@@ -30,13 +30,13 @@ class Places:
         self._random = random
 
     def draw(self, count: int) -> np.ndarray:
-        """Poses (count, 3), m and rad, evenly spread over the free cells."""
+        """Poses (count, 3), m and rad, uniformly distributed over the free cells."""
         cells = self._corners[self._random.integers(len(self._corners), size=count)]
         points = (cells + self._random.random((count, 2))) * self._resolution + self._origin
         return np.column_stack((points, self._random.uniform(-np.pi, np.pi, count)))
 
     def draw_fitting(self, count: int, share: float, scan: Scan, model: LaserModel) -> np.ndarray:
-        """Poses (count, 3) in no order, that share of them where the scan fits well."""
+        """Poses (count, 3) in random order, `share` of them where the scan fits well."""
         fitting = int(count * share)
         anywhere = self.draw(count - fitting)
         if not fitting:

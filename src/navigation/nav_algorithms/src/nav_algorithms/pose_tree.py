@@ -1,4 +1,4 @@
-"""The paths of all particles: a tree, because particles share where they came from."""
+"""The paths of all particles: a tree, because particles share their past."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ ROOT = -1
 
 
 class PoseTree:
-    """Nodes (pose, scan), each knowing the one before; forgets what no particle came along."""
+    """Nodes (pose, scan), each with its parent; drops nodes that are on no particle's path."""
 
     def __init__(self, count: int) -> None:
         """Paths of `count` particles, all empty."""
@@ -19,7 +19,7 @@ class PoseTree:
         self._leaves = np.full(count, ROOT)
 
     def append(self, poses: np.ndarray, scan: int) -> None:
-        """Every particle i went on to poses[i], (3,), where it took scan number `scan`."""
+        """Each particle i moved to poses[i], (3,), where it took scan number `scan`."""
         count = len(self._leaves)
         if self._used + count > len(self._parents):
             self._compact()
@@ -29,7 +29,7 @@ class PoseTree:
         self._used += count
 
     def choose(self, chosen: np.ndarray) -> None:
-        """Particle i goes on with the path of particle chosen[i]."""
+        """Particle i continues with the path of particle chosen[i]."""
         self._leaves = self._leaves[chosen]
 
     def path(self, particle: int) -> tuple[np.ndarray, np.ndarray]:
@@ -42,7 +42,7 @@ class PoseTree:
         return self._poses[nodes[::-1]], self._scans[nodes[::-1]]
 
     def _compact(self) -> None:
-        """Drops the nodes that no leaf came along, and makes room for twice what stays."""
+        """Drop the nodes that are on no leaf's path, and make room for twice the rest."""
         kept = np.zeros(self._used, bool)
         fresh = np.unique(self._leaves[self._leaves != ROOT])
         while len(fresh):
@@ -50,7 +50,7 @@ class PoseTree:
             parents = self._parents[fresh]
             fresh = np.unique(parents[parents != ROOT])
             fresh = fresh[~kept[fresh]]
-        numbers = np.append(np.cumsum(kept) - 1, ROOT)  # the last is found at index ROOT
+        numbers = np.append(np.cumsum(kept) - 1, ROOT)  # ROOT, -1, indexes the last
         room = 2 * kept.sum() + 64 * len(self._leaves)
         for name in ("_poses", "_parents", "_scans"):
             old = getattr(self, name)

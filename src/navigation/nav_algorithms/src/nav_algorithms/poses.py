@@ -21,7 +21,7 @@ def compose(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def invert(pose: np.ndarray) -> np.ndarray:
-    """The origin as seen from `pose`."""
+    """The origin in the frame of `pose`."""
     pose = np.asarray(pose, float)
     cos, sin = np.cos(pose[..., 2]), np.sin(pose[..., 2])
     return np.stack((-cos * pose[..., 0] - sin * pose[..., 1],
@@ -30,7 +30,7 @@ def invert(pose: np.ndarray) -> np.ndarray:
 
 
 def relative(origin: np.ndarray, pose: np.ndarray) -> np.ndarray:
-    """`pose` as seen from `origin`, both given in one frame."""
+    """`pose` in the frame of `origin`, both given in one frame."""
     return compose(invert(origin), pose)
 
 

@@ -1,8 +1,8 @@
-"""Where particles go next: the Gaussian that odometry and scan give together, and a draw from it.
+"""The proposal distribution of particles: the Gaussian from odometry and scan, and a draw from it.
 
 The improved proposal of G. Grisetti, C. Stachniss, W. Burgard, "Improved techniques for grid
 mapping with Rao-Blackwellized particle filters" (2007); the Gaussian is that of the Gauss-Newton
-matrix at the matched pose, where they sample poses around it. Units as in scan_matching.
+matrix at the matched pose, whereas they sample poses around it. Units as in scan_matching.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ def propose(tables: np.ndarray, pool: np.ndarray, beams: np.ndarray, priors: np.
             steps: np.ndarray, stride: int, iterations: int, kernel: int, widths: np.ndarray,
             fewest: float, skip: int, likelihoods: np.ndarray, matched: np.ndarray,
             factors: np.ndarray) -> None:
-    """Moves particles (N): `drawn` (N, 3) become draws from what odometry and scan say together.
+    """Moves particles (N): `drawn` (N, 3) become draws from the posterior of odometry and scan.
 
-    They come as draws from the odometry alone, and stay it where the best score is below `fewest`.
+    They are draws from the odometry before, and stay so if the best score is below `fewest`.
     `priors` (N, 3) and `informations` (N, 3, 3) are the odometry's Gaussian, `normals` (N, 3)
     standard normal draws; `halves`, `steps` and `stride` are the search's, `kernel`, `widths` and
     `skip` the evaluation's. `likelihoods` (N,) become the log likelihoods of the matched poses,
     `matched` (N, 3) those poses, and `factors` (N, 3, 3) the Cholesky factors of the information
-    that a draw is made with; 0 where nothing matched.
+    of the draw; 0 if nothing matched.
     """
     hessian = np.empty((3, 3))
     pose, from_prior, gradient, offset = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
@@ -43,7 +43,7 @@ def propose(tables: np.ndarray, pool: np.ndarray, beams: np.ndarray, priors: np.
         found, score = refine(table, pool, beams, prior, information, pose, iterations, kernel,
                               widths, lower)
         from_prior[:] = prior
-        # Never worse than to believe the odometry.
+        # Never worse than trusting the odometry.
         staying, there = evaluate(table, pool, beams, from_prior, kernel, 1, widths, hessian,
                                   gradient)
         if staying > found:

@@ -1,7 +1,7 @@
-"""Rays through a grid of cells, cell by cell, none left out.
+"""Rays through a grid, through every cell on their way.
 
 The traversal is that of Amanatides and Woo, "A fast voxel traversal algorithm for ray tracing"
-(1987): from one crossing of a cell's border to the next.
+(1987): from one crossing of a cell border to the next.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from nav_algorithms.compiled import compiled
 
 @compiled("UniTuple(f8, 3)(f8, f8, i8)")
 def _axis(position: float, direction: float, cell: int) -> tuple[float, float, float]:
-    """(way to the first border, way from border to border, step in cells) along one axis."""
+    """(distance to the first border, distance between borders, step in cells) along one axis."""
     if direction > 0.0:
         return (cell + 1 - position) / direction, 1.0 / direction, 1.0
     if direction < 0.0:
@@ -26,7 +26,7 @@ def _axis(position: float, direction: float, cell: int) -> tuple[float, float, f
 @compiled("f8(u1[:,::1], f8, f8, f8, f8)")
 def _first_occupied(occupied: np.ndarray, x: float, y: float, angle: float,
                     reach: float) -> float:
-    """Way to the first occupied cell, everything in cells; inf if none is nearer than `reach`."""
+    """Distance to the first occupied cell, all in cells; inf if none is within `reach`."""
     rows, columns = occupied.shape
     column, row = math.floor(x), math.floor(y)
     cos, sin = math.cos(angle), math.sin(angle)
@@ -57,8 +57,8 @@ def cast(occupied: np.ndarray, resolution: float, origin_x: float, origin_y: flo
     """Ranges (N,), m, from (x, y), m, along angles (N,), rad, all in the grid's frame.
 
     `occupied` (rows, columns) is not 0 where a ray ends; row 0 and column 0 begin at the origin,
-    m. A range is the way to the border of the first occupied cell: 0 from within one, inf where
-    none is nearer than `range_max`, m. Rays pass freely outside the grid.
+    m. A range is the distance to the border of the first occupied cell: 0 from within one, inf if
+    none is within `range_max`, m. Rays pass freely outside the grid.
     """
     ranges = np.empty(angles.size)
     column, row = (x - origin_x) / resolution, (y - origin_y) / resolution
@@ -71,9 +71,9 @@ def cast(occupied: np.ndarray, resolution: float, origin_x: float, origin_y: flo
 @compiled("void(i4[:,::1], i8, i8, i8, i8, i8)")
 def count_between(counts: np.ndarray, row: int, column: int, end_row: int, end_column: int,
                   amount: int) -> None:
-    """Adds to each cell on the line between two cells' centres, the first and not the last.
+    """Add `amount` to each cell on the line between two cells' centres, without the last.
 
-    Cells outside the grid are passed over.
+    Cells outside the grid are skipped.
     """
     rows, columns = counts.shape
     right, up = abs(end_column - column), abs(end_row - row)

@@ -1,4 +1,4 @@
-"""When nothing else helps: look round, or leave the tight spot; one command a call."""
+"""Recovery behaviours: look round, or leave a tight spot; one command per call."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from nav_algorithms.local_planning.velocities import Command
 
 @dataclass(frozen=True)
 class RotateSettings:
-    """Names of rotate_recovery/RotateRecovery; rad, s."""
+    """Parameters of rotate_recovery/RotateRecovery; rad, s."""
 
     sim_granularity: float
     frequency: float
@@ -27,7 +27,7 @@ class RotateSettings:
 
 @dataclass(frozen=True)
 class EscapeSettings:
-    """How to leave a tight spot; m, s. A radius of 0 is a robot that only goes straight."""
+    """Parameters of leaving a tight spot; m, s. A radius of 0: the robot only drives straight."""
 
     distance: float
     speed: float
@@ -38,7 +38,7 @@ def rotation(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray, turned_s
              settings: RotateSettings) -> Command | None:
     """The next command of one full turn to the left, of which `turned_so_far`, rad, is done.
 
-    Zero once it is done; None where the footprint (K, 2) would touch something on the rest of it.
+    Zero once it is done; None if the footprint (K, 2) would touch something during the rest.
     `pose` (3,) in the costmap's frame.
     """
     left = 2 * np.pi - turned_so_far
@@ -58,11 +58,11 @@ def rotation(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray, turned_s
 
 def escape(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
            settings: EscapeSettings) -> Command | None:
-    """A slow drive out of a tight spot, backwards or forwards; None where all ways are blocked.
+    """A slow drive out of a tight spot, backwards or forwards; None if all ways are blocked.
 
-    Of the ways that touch nothing over `distance`, or over half of it where there is none, the one
-    that ends farthest from all obstacles. Backwards comes first among equals: there the robot came
-    from. The command holds for the length of its trajectory.
+    Of the free ways over `distance`, or over half of it if there is none, the one that ends
+    farthest from all obstacles. Among equals backwards comes first: the robot came from there. The
+    command holds for the length of its trajectory.
     """
     pose = np.asarray(pose, float)
     footprint = footprints.shrunk_to_fit(costmap, np.asarray(footprint, float), pose)

@@ -1,12 +1,12 @@
-"""Where a scan fits a map of hits best: a search on a grid of poses, then Gauss-Newton.
+"""Matches a scan to a map of hits: a search on a grid of poses, then Gauss-Newton.
 
-The search is correlative (E. Olson, "Real-time correlative scan matching", 2009): it finds its way
-from far. The refinement takes each beam's end to the mean of the hits around it: across the wall
-that the beam's neighbours show, and hardly along it (A. Censi, "An ICP variant using a
+The search is correlative (E. Olson, "Real-time correlative scan matching", 2009): it works from
+far. The refinement moves each beam's end to the mean of the hits around it: across the wall
+shown by the beam's neighbours, and hardly along it (A. Censi, "An ICP variant using a
 point-to-line metric", 2008). So the end of a wall's known part does not hold the robot back.
 
-All lengths in cells of the map, all poses (column, row, yaw). `beams` (N, 5): the ends x, y of the
-beams in the robot's frame, and how much each of them holds, xx, xy, yy (see beam_walls).
+All lengths are in cells of the map, all poses (column, row, yaw). `beams` (N, 5): the ends x, y
+of beams in the robot's frame, and how much each constrains, xx, xy, yy (see beam_walls).
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from nav_algorithms.compiled import compiled
 from nav_algorithms.hit_maps import HITS, NEAR, PATCH, SUM_COLUMN, SUM_ROW, patch_at, value_at
 from nav_algorithms.small_matrices import cholesky, solve_backwards, solve_forwards
 
-TRUSTED_HITS = 3.0  # hits from which on a wall counts in full
-FULL_HITS = 10.0    # hits after which a cell's weight among others stays as it is
-MISS = 6.7          # what a beam that ends at no wall takes from the log likelihood
+TRUSTED_HITS = 3.0  # with this many hits a wall counts fully
+FULL_HITS = 10.0    # with this many hits a cell's weight among others no longer grows
+MISS = 6.7          # subtracted from the log likelihood for a beam that ends at no wall
 
 
 @compiled("UniTuple(f8, 3)(i4[:,::1], f4[:,:,:,::1], f8, f8, i8)")
@@ -62,8 +62,8 @@ def evaluate(table: np.ndarray, pool: np.ndarray, beams: np.ndarray, pose: np.nd
 
     The score is about how many beams end at a wall: each adds exp(-d^2 / widths[1]) for its
     distance d. `widths` (3,): the likelihood's deviation, cells; the score's width, cells squared;
-    the deviation, cells, that `hessian` (3, 3) and `gradient` (3,) are for: they become those of
-    the negative log likelihood, as Gauss-Newton takes them.
+    the deviation, cells, for `hessian` (3, 3) and `gradient` (3,), which become those of the
+    negative log likelihood, for Gauss-Newton.
     """
     hessian[:] = 0.0
     gradient[:] = 0.0
@@ -119,7 +119,7 @@ def prior_cost(pose: np.ndarray, prior: np.ndarray, information: np.ndarray) -> 
 def search(table: np.ndarray, pool: np.ndarray, beams: np.ndarray, prior: np.ndarray,
            information: np.ndarray, halves: np.ndarray, steps: np.ndarray, stride: int,
            best: np.ndarray) -> None:
-    """`best` (3,) becomes the pose that most beams fit, on a grid around the prior.
+    """`best` (3,) becomes the pose on a grid around the prior at which most beams fit.
 
     The grid has halves[i] steps of steps[i] to either side along axis i.
     """
@@ -148,7 +148,7 @@ def search(table: np.ndarray, pool: np.ndarray, beams: np.ndarray, prior: np.nda
 def refine(table: np.ndarray, pool: np.ndarray, beams: np.ndarray, prior: np.ndarray,
            information: np.ndarray, pose: np.ndarray, iterations: int, kernel: int,
            widths: np.ndarray, lower: np.ndarray) -> tuple[float, float]:
-    """(log likelihood, score) at `pose` (3,), moved to where scan and prior agree best.
+    """(log likelihood, score) at `pose` (3,), which is moved to where scan and prior agree best.
 
     `lower` (3, 3) becomes the Cholesky factor of the posterior's information there.
     """

@@ -1,10 +1,10 @@
-"""How well a scan fits each particle: amcl's three models of a laser.
+"""How well a scan fits each particle: amcl's three laser models.
 
-The laws are those of S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), 6.3 and 6.4,
-with amcl's names and its odd sum: a beam of probability p adds p^3 to a particle's weight, so a few
-wrong beams do no harm. Three faults of amcl's are left out: its half cell between map and field,
-readings beyond range_max that its beam model takes for no reading at all (here: for z_max), and,
-with `wall_depth`, poses that look into the middle of walls.
+The formulas are those of S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics" (2005), 6.3 and
+6.4, with amcl's names and its unusual sum: a beam of probability p adds p^3 to a particle's
+weight, so a few wrong beams do no harm. Three errors of amcl are not reproduced: its half cell
+between map and field, readings beyond range_max that its beam model ignores (here: z_max), and,
+with `wall_depth`, poses whose beams end inside walls.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ BEAM, FIELD, FIELD_PROB = "beam", "likelihood_field", "likelihood_field_prob"
 
 @dataclass(frozen=True)
 class SensorSettings:
-    """amcl's parameters by its names; m. The last two are ours: see _way_off."""
+    """amcl's parameters by its names; m. The last two are additions: see _way_off."""
 
     laser_max_beams: int
     laser_z_hit: float
@@ -46,8 +46,8 @@ class SensorSettings:
 class Scan:
     """`ranges` (N,), m, along `angles` (N,), rad, from `laser` (x, y, yaw) in the robot's frame.
 
-    Nothing nearer than `range_max`, m, was seen along a beam of that range or more, and nan is no
-    measurement.
+    A range of `range_max`, m, or more means that nothing nearer was seen, and nan that nothing was
+    measured.
     """
 
     ranges: np.ndarray
@@ -56,13 +56,13 @@ class Scan:
     range_max: float
 
     def thinned(self, step: int) -> Scan:
-        """Every so many beams, without those that measured nothing."""
+        """Every `step`-th beam, without those that measured nothing."""
         ranges, angles = self.ranges[::step], self.angles[::step]
         kept = ~np.isnan(ranges)
         return Scan(ranges[kept], angles[kept], self.laser, self.range_max)
 
     def ends(self) -> np.ndarray:
-        """Where beams hit, (M, 2), m, in the robot's frame."""
+        """The ends of beams that hit, (M, 2), m, in the robot's frame."""
         hit = self.ranges < self.range_max
         ranges, angles = self.ranges[hit], self.angles[hit]
         points = np.column_stack((ranges * np.cos(angles), ranges * np.sin(angles)))
@@ -71,10 +71,10 @@ class Scan:
 
 @dataclass(frozen=True)
 class Fit:
-    """How well one scan fits N particles: logarithms of the factors by which it changes weights.
+    """How well one scan fits N particles: logarithms of the factors for their weights.
 
-    `parts` (N,), 0 to 1: what there is of the best that this model could say of such a scan; unlike
-    the factors they are alike for scans of few and of many beams.
+    `parts` (N,), 0 to 1: the share of the best possible fit of such a scan in this model; unlike
+    the factors they are comparable between scans of few and of many beams.
     """
 
     logs: np.ndarray
@@ -87,15 +87,15 @@ class LaserModel:
     def __init__(self, grid: OccupancyGrid, settings: SensorSettings) -> None:
         self._settings = settings
         self._place = grid.resolution, *grid.origin
-        # Where upstream's rays end: at all that is not free, and at the map's edge.
+        # The ends of upstream's rays: cells that are not free, and the map's edge.
         self._blocked = np.pad((grid.cells != FREE).astype(np.uint8), 1, constant_values=1)
         self._distances = np.minimum(_way_off(grid.cells, grid.resolution, settings),
                                      settings.laser_likelihood_max_dist)
         self._tables: dict[float, np.ndarray] = {}
 
     def compare(self, particles: np.ndarray, scan: Scan, converged: bool = False) -> Fit:
-        """A scan with what particles (N, 3) should see; once they have `converged`, beams that
-        most of them cannot explain may be left out.
+        """Compare a scan with what particles (N, 3) should see; once they have `converged`, beams
+        that most of them cannot explain may be left out.
         """
         chosen = self._settings
         count = len(scan.ranges)
@@ -121,7 +121,7 @@ class LaserModel:
         return self._settings.laser_z_hit + self._settings.laser_z_rand / range_max
 
     def _probabilities(self, range_max: float) -> np.ndarray:
-        """Of a beam that ends in each cell; in a border one cell wide, that of outside the map."""
+        """Probability of a beam ending in each cell; the border, one cell wide, is for outside."""
         if range_max not in self._tables:
             chosen = self._settings
             distances = np.pad(self._distances, 1,
@@ -151,7 +151,7 @@ class LaserModel:
 
 
 def _part(sums: np.ndarray, best: float) -> np.ndarray:
-    """All of it where there was nothing to see."""
+    """The sums as a share of the best one; 1 if there was nothing to see."""
     return sums / best if best > 0.0 else np.ones_like(sums)
 
 
@@ -159,9 +159,9 @@ def _way_off(cells: np.ndarray, resolution: float, settings: SensorSettings) -> 
     """How wrong it is for a beam to end in each cell, (rows, columns), m.
 
     Upstream's distance to the nearest occupied cell: any place in a wall is right, and a wall of
-    15 cm is one broad optimum for sigma_hit of 0.2 m, 7 cm behind its surface. With `wall_depth`
-    that many times the distance to the surface, where it is more; once at most in walls thicker
-    than `thin_wall`, which are not seen from both sides: more would push poses away from them.
+    15 cm is one broad optimum for sigma_hit of 0.2 m, 7 cm behind its surface. With `wall_depth`,
+    that times the depth below the surface, if it is more; in walls thicker than `thin_wall`, which
+    are not seen from both sides, at most the depth itself: more would push poses away from them.
     """
     occupied, free = cells == OCCUPIED, cells == FREE
     distances = likelihood_field.distances(occupied.astype(np.uint8)) * resolution
@@ -176,9 +176,9 @@ def _way_off(cells: np.ndarray, resolution: float, settings: SensorSettings) -> 
 
 @compiled("f8(f8[:,::1], f8, f8)")
 def _value_at(table: np.ndarray, column: float, row: float) -> float:
-    """Of a table with a border one cell wide, which stands for all that lies outside; in cells.
+    """The value of a table with a border one cell wide, which stands for all outside; in cells.
 
-    In between for places between the cells' centres: else poses up to a cell apart fit alike.
+    Interpolated between the cells' centres: otherwise poses up to a cell apart fit equally.
     """
     across = min(max(column + 0.5, 0.0), table.shape[1] - 1.0)
     up = min(max(row + 0.5, 0.0), table.shape[0] - 1.0)
@@ -191,7 +191,7 @@ def _value_at(table: np.ndarray, column: float, row: float) -> float:
 @compiled("f8[::1](f8[:,::1], f8, f8, f8, f8[:,::1], f8[:,::1])")
 def _sums(table: np.ndarray, resolution: float, origin_x: float, origin_y: float,
           particles: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """For each particle the sum of the table's values where its beams end."""
+    """For each particle, the sum of the table's values where its beams end."""
     found = np.empty(len(particles))
     for n in range(len(particles)):
         cos, sin = np.cos(particles[n, 2]) / resolution, np.sin(particles[n, 2]) / resolution
@@ -208,7 +208,7 @@ def _sums(table: np.ndarray, resolution: float, origin_x: float, origin_y: float
 @compiled("f8[::1](f8[:,::1], f8, f8, f8, f8[:,::1], f8[:,::1])")
 def _shares(table: np.ndarray, resolution: float, origin_x: float, origin_y: float,
             particles: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """For each beam the mean over the particles of the table's values where it ends."""
+    """For each beam, the mean over the particles of the table's values where it ends."""
     found = np.zeros(len(ends))
     for n in range(len(particles)):
         cos, sin = np.cos(particles[n, 2]) / resolution, np.sin(particles[n, 2]) / resolution
@@ -224,7 +224,7 @@ def _shares(table: np.ndarray, resolution: float, origin_x: float, origin_y: flo
 def _sums_of_beams(blocked: np.ndarray, resolution: float, origin_x: float, origin_y: float,
                    lasers: np.ndarray, ranges: np.ndarray, angles: np.ndarray, range_max: float,
                    laws: np.ndarray) -> np.ndarray:
-    """For each laser pose (N, 3) the sum of its beams' cubed probabilities.
+    """For each laser pose (N, 3), the sum of its beams' cubed probabilities.
 
     `blocked` has a border one cell wide; `laws`: z_hit, z_short, z_max, z_rand, sigma, lambda.
     """

@@ -1,4 +1,4 @@
-"""Symmetric 3 x 3 matrices inside compiled loops, where numpy.linalg would want SciPy."""
+"""Symmetric 3 x 3 matrices in compiled loops, where numpy.linalg would need SciPy."""
 
 from __future__ import annotations
 

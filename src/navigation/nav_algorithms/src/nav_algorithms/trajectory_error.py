@@ -16,17 +16,17 @@ from nav_algorithms.poses import transform_points, wrap_angle
 
 @dataclass(frozen=True)
 class TrajectoryError:
-    """Distances between estimated and true positions of the same moments, m."""
+    """Distances between estimated and true positions at the same times, m."""
 
     ate_rmse: float    # after the best rigid alignment: the shape of the path
-    rmse: float        # as they are, in one frame: where the robot thought that it was
-    largest: float     # of the distances as they are
+    rmse: float        # without alignment, in one frame: where the robot believed it was
+    largest: float     # the largest distance without alignment
     yaw_rmse: float    # rad, after the alignment
-    alignment: np.ndarray  # (3,) x, y, yaw: puts estimated poses where the true ones are
+    alignment: np.ndarray  # (3,) x, y, yaw: moves estimated poses to the true ones
 
 
 def trajectory_error(estimated: np.ndarray, true: np.ndarray) -> TrajectoryError:
-    """Of poses (N, 3), row by row of the same moment; raises ValueError for other shapes."""
+    """The error of poses (N, 3), row by row of one time; raises ValueError for other shapes."""
     estimated, true = np.asarray(estimated, float), np.asarray(true, float)
     if estimated.shape != true.shape or estimated.ndim != 2 or estimated.shape[1] != 3 \
             or not len(true):
@@ -39,7 +39,7 @@ def trajectory_error(estimated: np.ndarray, true: np.ndarray) -> TrajectoryError
 
 
 def align(points: np.ndarray, targets: np.ndarray) -> np.ndarray:
-    """Pose (3,) that puts `points` (N, 2) nearest to `targets` (N, 2), in least squares."""
+    """The pose (3,) that moves `points` (N, 2) to `targets` (N, 2) by least squares."""
     middle, target = points.mean(axis=0), targets.mean(axis=0)
     spread = (points - middle).T @ (targets - target)
     yaw = np.arctan2(spread[0, 1] - spread[1, 0], spread[0, 0] + spread[1, 1])
@@ -48,9 +48,9 @@ def align(points: np.ndarray, targets: np.ndarray) -> np.ndarray:
 
 
 def at_moments(stamps: np.ndarray, poses: np.ndarray, moments: np.ndarray) -> np.ndarray:
-    """Poses (M, 3) at `moments` (M,), s, between poses (N, 3) at rising `stamps` (N,), s.
+    """Poses (M, 3) at `moments` (M,), s, interpolated from poses (N, 3) at rising `stamps` (N,), s.
 
-    NaN before the first and after the last: nothing is known there.
+    NaN before the first and after the last, where nothing is known.
     """
     moments, headings = np.asarray(moments, float), np.unwrap(poses[:, 2])
     columns = [np.interp(moments, stamps, column, np.nan, np.nan)

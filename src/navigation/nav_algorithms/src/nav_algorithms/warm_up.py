@@ -9,7 +9,7 @@ import nav_algorithms
 
 
 def main() -> None:
-    """Import every module; each compiles what is missing and keeps it."""
+    """Import every module; each compiles and caches what is missing."""
     for module in pkgutil.walk_packages(nav_algorithms.__path__, "nav_algorithms."):
         if module.name != __spec__.name:
             importlib.import_module(module.name)

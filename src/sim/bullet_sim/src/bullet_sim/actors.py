@@ -1,4 +1,4 @@
-"""Walks actors along their trajectories, by simulated time."""
+"""Moves actors along their trajectories, by simulated time."""
 
 import itertools
 import math
@@ -13,27 +13,27 @@ PERIOD = 1 / 30  # s, simulated, between two poses
 
 
 class Actor:
-    """One actor. Collisions do not stop it: its pose is that of its script."""
+    """One actor. Collisions do not stop it: its script alone determines its pose."""
 
     def __init__(self, model: Model, trajectory: Trajectory):
         self.model = model
         self._trajectory = trajectory
         self._place: Pose | None = None
-        self._last = math.inf  # s, when it was last moved
+        self._last = math.inf  # s, time of the last move
 
     def walk(self, time: float) -> None:
-        """Put it where it is at that simulated time (s); to be called after each step."""
+        """Move it to its pose at that simulated time (s); to be called after each step."""
         if self._last <= time < self._last + PERIOD - 1e-9:
             return
         self._last = time
         place = pose_at(self._trajectory, time)
-        if place != self._place:  # what stands still may come to rest
+        if place != self._place:  # an actor that stands still may come to rest
             self._place = place
             self.model.set_pose(place)
 
 
 def pose_at(trajectory: Trajectory, time: float) -> Pose:
-    """Pose in the world, s after the world's beginning: straight between waypoints."""
+    """Pose in the world at a simulated time (s): straight between waypoints."""
     waypoints = trajectory.waypoints
     if not trajectory.auto_start:
         return waypoints[0][1]
@@ -50,7 +50,7 @@ def pose_at(trajectory: Trajectory, time: float) -> Pose:
 
 
 def between(a: Pose, b: Pose, part: float) -> Pose:
-    """The pose so far (0..1) on the way from one to the other, turning at an even rate."""
+    """The pose at `part` (0..1) of the way from one to the other, turning at a constant rate."""
     position = tuple(p + part * (q - p) for p, q in zip(a.position, b.position, strict=True))
     return Pose(position, _slerp(a.orientation, b.orientation, part))
 

@@ -1,4 +1,4 @@
-"""The core's exceptions: one line each, saying what is wrong, where, and what there is instead."""
+"""The core's exceptions: one line each, saying what is wrong, where, and what is available."""
 
 import difflib
 import re
@@ -6,30 +6,30 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
 LINE_BREAK = re.compile(r"\s*[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]\s*")  # those of str.splitlines
-LONGEST_LINE = 900  # characters: a name in a file, and a list of names, may be of any length
+LONGEST_LINE = 900  # characters: a name in a file, or a list of names, may have any length
 
 
 def shortened(text: str, longest: int = LONGEST_LINE) -> str:
-    """One line, and both ends of one that is too long: what is wrong, and what to do about it."""
+    """One line; if too long only both ends, which say what is wrong and what to do about it."""
     text = LINE_BREAK.sub(" ", text)
     half = longest // 2
     return text if len(text) <= longest else f"{text[:half]} … {text[-half:]}"
 
 
 class SimulationError(Exception):
-    """Base of everything the simulator core raises on purpose."""
+    """Base class of all errors that the simulator core raises on purpose."""
 
     def __str__(self) -> str:
         return shortened(super().__str__())
 
 
 class FormatError(SimulationError):
-    """A model, world, material or xacro text that cannot be understood."""
+    """A model, world, material or xacro text is invalid."""
 
 
 @contextmanager
 def prefixed(text: str, kind: type[SimulationError] = FormatError) -> Iterator[None]:
-    """Errors of the `with` block become one of this kind, whose line begins with this text."""
+    """Turn errors of the `with` block into this type, with this text at the start of the line."""
     try:
         yield
     except SimulationError as error:
@@ -37,13 +37,13 @@ def prefixed(text: str, kind: type[SimulationError] = FormatError) -> Iterator[N
 
 
 def did_you_mean(word: str, known: Iterable[str], alike: float, form: str = "{}") -> str:
-    """The end of a line: the nearest of the known words, if any is so much alike (0..1)."""
+    """The end of a line: the nearest of the known words, if it is at least so similar (0..1)."""
     close = difflib.get_close_matches(word, known, 1, alike)
     return f"; did you mean {form.format(close[0])}?" if close else ""
 
 
 class ResourceNotFound(SimulationError):
-    """A URI or file name that is in none of the searched folders."""
+    """A URI or file name is in none of the searched folders."""
 
     def __init__(self, uri: str, searched: Iterable[str] = (), known: Iterable[str] = ()):
         self.uri = uri
@@ -54,7 +54,7 @@ class ResourceNotFound(SimulationError):
 
 
 class UnknownName(SimulationError):
-    """A model, link or joint that does not exist."""
+    """A model, link or joint does not exist."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]):
         self.kind, self.name, self.known = kind, name, tuple(known)
@@ -62,7 +62,7 @@ class UnknownName(SimulationError):
 
 
 def check_lengths(geometry: object, *names: str) -> None:
-    """SimulationError for a field of these names (m) that is not above 0."""
+    """Raise SimulationError for a field of these names (m) that is not above 0."""
     for name in names:
         value = getattr(geometry, name)
         if not value > 0.0:

@@ -1,4 +1,4 @@
-"""Checks a file that a model names before it is opened: reading a pipe would block."""
+"""Checks a file named by a model before it is opened: reading a pipe would block."""
 
 import os
 import stat
@@ -9,13 +9,13 @@ from bullet_sim.errors import FormatError
 
 
 def check_file(path: Path | str, largest: int, advice: str = "") -> os.stat_result:
-    """Its status; FormatError, of one line that begins with the path, if it is not to be opened.
+    """The file's status; FormatError, one line that begins with the path, if it must not be opened.
 
-    It has to be a plain file of at most `largest` bytes; `advice` says how to make it smaller.
+    It must be a regular file of at most `largest` bytes; `advice` says how to make it smaller.
     """
     try:
         status = os.stat(path)
-    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte in it
+    except (OSError, ValueError) as error:  # ValueError: a name that contains a zero byte
         raise FormatError(
             f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
     if not stat.S_ISREG(status.st_mode):
@@ -28,9 +28,9 @@ def check_file(path: Path | str, largest: int, advice: str = "") -> os.stat_resu
 
 
 def find_beside(name: str, folder: Path) -> Path | None:
-    """A file that one in `folder` names: there, or beside it, as names are of other machines."""
+    """A file that one in `folder` names: by path, or by name, as paths are of other machines."""
     name = unquote(name.replace("\\", "/"))
     for path in (folder / name, folder / Path(name).name):
-        if os.path.isfile(path):  # Path.is_file raises of a name that is too long
+        if os.path.isfile(path):  # Path.is_file raises for a name that is too long
             return path
     return None

@@ -1,4 +1,4 @@
-"""Joints of a model: driven by the engine, passive, and closing a loop."""
+"""Joints of a model: driven by the engine, passive, or closing a loop."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -15,7 +15,7 @@ from bullet_sim.twist import dot
 
 
 class BodyJoint:
-    """A joint of the description that a body holds."""
+    """A joint of the description that is part of a body."""
 
     second_axis: "Joint | None" = None  # of a universal or revolute2 joint
 
@@ -47,7 +47,7 @@ class Joint(BodyJoint):
         return self._body.joint_state(self.name)[1]
 
     def reset(self, position: float, velocity: float = 0.0) -> None:
-        """Put the joint there at once; a screw travels with its turn."""
+        """Set the joint's position at once; a screw also travels as it turns."""
         self._body.reset_joint(self.name, position, velocity)
         if self.name + TRAVEL in self._body.joint_index:
             pitch = -self.description.thread_pitch
@@ -55,22 +55,22 @@ class Joint(BodyJoint):
         self._touched()
 
     def drive_velocity(self, velocity: float, effort: float) -> None:
-        """Hold a rate with at most `effort` (N m or N), until the next command."""
+        """Hold a velocity with at most `effort` (N m or N), until the next command."""
         self._body.drive_velocity(self.name, velocity, effort)
 
     def drive_effort(self, effort: float) -> None:
-        """Effort (N m or N) during the next step, within the joint's limits.
+        """Apply an effort (N m or N) during the next step, within the joint's limits.
 
-        As Gazebo's Joint::CheckAndTruncateForce (physics/Joint.cc) cuts it.
+        Cut as by Gazebo's Joint::CheckAndTruncateForce (physics/Joint.cc).
         """
         self._body.drive_effort(self.name, self._within_limit(effort))
 
     def add_effort(self, effort: float) -> None:
-        """Effort (N m or N) during the next step, added to its drive; cut to the limit."""
+        """Add an effort (N m or N) to the drive's during the next step; cut to the limit."""
         self._body.add_effort(self.name, self._within_limit(effort))
 
     def _within_limit(self, effort: float) -> float:
-        """Cut to the effort limit; nothing that would speed it up beyond the velocity limit."""
+        """Cut to the effort limit; none that would accelerate it beyond the velocity limit."""
         limit, fastest = self.description.effort, self.description.velocity
         if fastest >= 0 and effort:
             rate = self.velocity
@@ -80,11 +80,11 @@ class Joint(BodyJoint):
 
     @property
     def motor(self) -> tuple[float, float]:
-        """The motor's rate, and its greatest effort."""
+        """The motor's velocity, and its maximum effort."""
         return self._body.motor(self.name)
 
     def change(self, lower: float, upper: float, damping: float) -> None:
-        """Other stops, rad or m (none if `lower` is above `upper`), and damping (N m s/rad)."""
+        """Change limits, rad or m (none if `lower` is above `upper`), and damping (N m s/rad)."""
         stops = {"lower": lower, "upper": upper, "damping": damping}
         kind = self.description.type
         if kind == "continuous" and min(abs(lower), abs(upper)) < NO_LIMIT:
@@ -95,13 +95,13 @@ class Joint(BodyJoint):
 
 
 class PassiveJoint(BodyJoint):
-    """A joint that nothing moves or drives: fixed, or a ball, which has no single angle."""
+    """A joint that is not driven: fixed, or a ball joint, which has no single angle."""
 
     position = velocity = 0.0  # as there is no single angle
-    motor = (0.0, 0.0)  # it has none
+    motor = (0.0, 0.0)  # has no motor
 
     def reset(self, position: float, velocity: float = 0.0) -> None:
-        """A ball goes back to the described pose; what is fixed stays."""
+        """A ball joint returns to the described pose; a fixed one stays."""
         if self.description.type == "ball":
             self._body.reset_ball(self.name)
 
@@ -118,13 +118,13 @@ class PassiveJoint(BodyJoint):
 
 
 class LoopBall(PassiveJoint):
-    """A ball that closes a loop."""
+    """A ball joint that closes a loop."""
 
     def __init__(self, description: JointDescription):
         super().__init__(description, None)
 
     def reset(self, position: float, velocity: float = 0.0) -> None:
-        """No effect: its links' poses decide, and the loop's other joints set those."""
+        """No effect: determined by its links' poses, which the loop's other joints set."""
 
     def reaction(self) -> tuple[Vector3, Vector3]:
         """Zeros: the engine does not report the load of a loop's last joint."""
@@ -132,11 +132,11 @@ class LoopBall(PassiveJoint):
 
 
 class LoopJoint(LoopBall):
-    """A joint that closes a loop: read from where its links are, driven by pushing at both."""
+    """A joint that closes a loop: read from its links' poses, driven by forces on both."""
 
     def __init__(self, description: JointDescription, parent: Link | None, child: Link | None,
                  pose_world: Pose):
-        """`parent` or `child` is None where it is the world, of which `pose_world` is the model."""
+        """`parent` or `child` is None for the world; `pose_world` is the model's pose in it."""
         super().__init__(description)
         self._parent, self._child = parent, child
         self._pose_world = pose_world
@@ -144,14 +144,14 @@ class LoopJoint(LoopBall):
         self._in_parent = _described(parent).inverse() * frame
 
     def _ends(self) -> tuple[Pose, Pose]:
-        """The joint's frame in the world, as the parent has it and as the child has it."""
+        """The joint's frame in the world, by the parent's pose and by the child's."""
         parent, child = (self._pose_world if link is None else link.pose
                          for link in (self._parent, self._child))
         return parent * self._in_parent, child * self.description.pose
 
     @property
     def position(self) -> float:
-        """Angle within half a turn of the described pose, rad, or travel, m."""
+        """Angle within half a turn from the described pose, rad, or travel, m."""
         parent, child = self._ends()
         axis = self.description.axis
         apart = parent.inverse() * child
@@ -185,14 +185,14 @@ class LoopJoint(LoopBall):
 
 
 class SingleJointGroup:
-    """A joint that is not the engine's own, in the place of a JointGroup."""
+    """A joint that is not in the engine; replaces a JointGroup."""
 
     def __init__(self, joint: PassiveJoint):
         self.names = [joint.name]
         self._joint = joint
 
     def states(self) -> Sequence[tuple]:
-        """A row: position, rate, (not used), effort of the motor that it has not."""
+        """A row: position, velocity, (not used), effort of the motor, which it does not have."""
         return [(self._joint.position, self._joint.velocity, None, 0.0)]
 
     def drive_efforts(self, efforts: Sequence[float]) -> None:

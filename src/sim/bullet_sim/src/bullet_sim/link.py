@@ -11,7 +11,7 @@ from bullet_sim.twist import Twist
 
 
 class Link:
-    """A link's description and where it is now, in the world."""
+    """A link's description and its current pose in the world."""
 
     def __init__(self, model: ModelState, description: LinkDescription, body: Body):
         self.model = model
@@ -31,7 +31,7 @@ class Link:
         return self.model.link_states()[self.name][1]
 
     def attach(self, other: Link | None = None) -> Weld:
-        """Weld it at its present pose to another model's link or the world, until released."""
+        """Weld it at its current pose to another model's link or the world, until released."""
         if other is None:
             return Weld(self.body, self.name)
         return Weld(self.body, self.name, other.body, other.name)
@@ -41,10 +41,10 @@ class Link:
         self.body.apply_force(self.name, force, torque)
 
     def apply_steady_force(self, force: Vector3) -> None:
-        """Force (N) at the centre of mass that acts in every step, world axes."""
+        """Force (N) at the centre of mass, applied in every step, world axes."""
         self.body.apply_steady_force(self.name, force)
 
 
 def gravity_compensation(link: LinkDescription, gravity: Vector3) -> Vector3:
-    """Force that makes a link with `<gravity>` off weightless, N."""
+    """The force that makes a link with `<gravity>` off weightless, N."""
     return tuple(-link.inertial.mass * g for g in gravity)

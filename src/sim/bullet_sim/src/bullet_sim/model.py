@@ -27,20 +27,20 @@ from bullet_sim.twist import STILL, Twist, dot, shifted_twist, twist_difference
 class Model(ModelState):
     """A spawned description. Everything is in world coordinates unless a name says otherwise.
 
-    SimulationError where the engine cannot hold it.
+    SimulationError if the engine cannot hold it.
     """
 
     def __init__(self, name: str, description: ModelDescription, pose: Pose,
                  client: PhysicsClient):
         super().__init__(name, description, pose)
-        self.has_recovered = False  # whether its pose or velocity was not finite once
+        self.has_recovered = False  # whether its pose or velocity was ever not finite
         self._auto_disable = client.auto_disable
         trees = [levelled(tree, client.surface_layer) for tree in assemble(description)]
         check_trees(name, trees)
         try:
             self._build(client, trees, pose)
         except Exception:
-            self.remove()  # what was made before the failure
+            self.remove()  # parts made before the failure
             raise
 
     def _build(self, client: PhysicsClient, trees: Sequence[Tree], pose: Pose) -> None:
@@ -54,7 +54,7 @@ class Model(ModelState):
         self.links = {
             link.name: Link(self, link, owner[link.name]) for link in description.links
         }
-        self._axes = {  # all that the engine can move, second axes and travels of screws too
+        self._axes = {  # all that the engine can move, including second axes and travels of screws
             joint: Joint(body.joint_description(joint), body, self.forget)
             for body in self.bodies for joint in body.joint_index
         }
@@ -64,7 +64,7 @@ class Model(ModelState):
         self._start_joints()
 
     def _start_joints(self) -> None:
-        """Put joints where a saved world has them; the model frame stays."""
+        """Set joints to their positions in a saved world; the model frame stays."""
         pose = self.pose
         away = [joint for joint in self.description.joints if joint.start]
         for joint in away:
@@ -95,10 +95,10 @@ class Model(ModelState):
     # --- motion
 
     def move_link(self, link: Link, pose: Pose, twist: Twist) -> None:
-        """Put one of its links there, with that velocity (world axes).
+        """Set the pose of one of its links, with that velocity (world axes).
 
-        What joints hold it to goes along; joints keep their positions and rates. Of what is fixed
-        to the world, the link's own joint alone moves, as far as it can.
+        Links connected by joints move with it; joints keep their positions and velocities. If it is
+        fixed to the world, only the link's own joint moves, as far as it can.
         """
         body = link.body
         if body.tree.fixed_base and not self.static:
@@ -113,9 +113,9 @@ class Model(ModelState):
             self.forget()
 
     def change_link(self, link: Link, inertial: Inertial, gravity: bool) -> None:
-        """Other mass, centre of mass and inertia of a link, and whether gravity pulls at it.
+        """Change mass, centre of mass and inertia of a link, and whether gravity acts on it.
 
-        SimulationError, and nothing changes, where no body is like that.
+        SimulationError, without any change, if these are impossible.
         """
         check_inertial(inertial)
         if not self.static:
@@ -125,15 +125,15 @@ class Model(ModelState):
         self.note_weightless()
 
     def set_twist(self, twist: Twist) -> None:
-        """Move as a rigid whole whose model frame has that twist; joints stop turning."""
+        """Move as a rigid whole whose model frame has that twist; joints stop."""
         for joint in self._axes.values():
             joint.reset(joint.position)
         self.set_velocity(twist)
 
     def reset(self) -> None:
-        """Back to the pose it was spawned at, joints at zero, everything still.
+        """Reset to the pose it was spawned at, joints at zero, everything still.
 
-        Welds stay, as Gazebo's joints between models do, and hold what is where it is then.
+        Welds stay, as Gazebo's joints between models do, and hold the links where they are then.
         """
         for joint in (*self._axes.values(), *self.joints.values()):
             joint.reset(0.0)
@@ -149,7 +149,7 @@ class Model(ModelState):
     # --- for the world
 
     def note_weightless(self) -> None:
-        """Which links gravity does not pull at."""
+        """Note the links on which gravity does not act."""
         self._weightless = [] if self.static else [
             link for link in self.links.values() if not link.description.gravity]
         described = self.description
@@ -158,7 +158,7 @@ class Model(ModelState):
                 described.joints or self._weightless)
 
     def before_step(self, gravity: Vector3) -> None:
-        """Forces that act every step; gravity in m/s^2."""
+        """Apply the forces of every step; gravity in m/s^2."""
         if not (self._steady or self._weightless) or self._auto_disable.disabled:
             return  # at rest no step takes place, and the engine would add them up
         for body in self._steady:
@@ -167,9 +167,9 @@ class Model(ModelState):
             link.apply_steady_force(gravity_compensation(link.description, gravity))
 
     def link(self, name: str) -> Link:
-        """The link, or the one that it was lumped into over a fixed joint.
+        """The link, or the one into which it was lumped over a fixed joint.
 
-        UnknownName without it.
+        UnknownName if there is none.
         """
         if name not in self.links:
             name = self._without_scope(name)
@@ -179,9 +179,9 @@ class Model(ModelState):
         return self.links[name]
 
     def joint(self, name: str) -> Joint | PassiveJoint:
-        """The joint of that name; fixed ones are there too, but not among `joints`.
+        """The joint of that name, also fixed ones, which are not in `joints`.
 
-        UnknownName without it; SimulationError for one that nothing can be read of.
+        UnknownName if there is none; SimulationError for one that cannot be read.
         """
         if name not in self.joints:
             name = self._without_scope(name)
@@ -194,17 +194,17 @@ class Model(ModelState):
                                   "remove <static>")
         if held:
             raise SimulationError(f"joint {name!r} of model {self.name} is of type "
-                                  f"{held[0].type}, of which there is nothing to read or drive")
+                                  f"{held[0].type}, which cannot be read or driven")
         raise UnknownName(f"joint of model {self.name}", name, self.joints)
 
     def _without_scope(self, name: str) -> str:
-        """A part's name inside the model; `MODEL::PART` is good, too (Gazebo's Model::GetJoint)."""
+        """A part's name in the model; `MODEL::PART` is allowed, too (Gazebo's Model::GetJoint)."""
         return name.removeprefix(f"{self.name}::")
 
     def joint_groups(self, names: Sequence[str]) -> list[JointGroup]:
-        """The joints of these names, to be read and driven together: a group for each body.
+        """The joints of these names, to be read and driven together: one group per body.
 
-        UnknownName and SimulationError as of `joint`.
+        UnknownName and SimulationError as from `joint`.
         """
         for name in names:
             self.joint(name)
@@ -220,10 +220,10 @@ class Model(ModelState):
 
 
 def _project_to_joint(link: Link, pose: Pose, twist: Twist) -> tuple[str, float, float] | None:
-    """Name, position and rate (rad or m) of the joint that carries `link`, nearest to these.
+    """Name, position and velocity (rad or m) of the joint that carries `link`, nearest to these.
 
-    Of a link that joints hold to the world. `pose` and `twist` (of the link's origin) are in the
-    world. None of a link that is fixed to the world or hangs on a ball joint.
+    For a link held to the world by joints. `pose` and `twist` (of the link's origin) are in the
+    world. None for a link that is fixed to the world or held by a ball joint.
     """
     body = link.body
     carrier = body.moving_carrier(link.name)

@@ -1,6 +1,6 @@
-"""Where a model is: its bodies, and its links' poses and twists, read from the engine once a step.
+"""The state of a model: its bodies, and its links' poses and twists, read once per step.
 
-What links and joints need of their model; `Model` adds the links and joints themselves.
+What links and joints need from their model; `Model` adds the links and joints themselves.
 """
 
 from bullet_sim.description import ModelDescription
@@ -37,7 +37,7 @@ class ModelState:
 
     @property
     def pose(self) -> Pose:
-        """Model frame: it stays where the first link has it."""
+        """Model frame, which keeps its pose relative to the first link."""
         if self.static or not self.description.links:
             return self._fixed_pose
         first = self.description.links[0]
@@ -57,7 +57,7 @@ class ModelState:
         self._fixed_pose = pose
 
     def move_body(self, body: Body, change: Pose) -> None:
-        """Move one of its bodies, all of a static one's, by a displacement given in the world."""
+        """Move one of its bodies, or all of a static model's, by a displacement in the world."""
         self._displace(self.bodies if self.static else [body], change)
         self._fixed_pose = change * self._fixed_pose
 
@@ -67,7 +67,7 @@ class ModelState:
         self.forget()
 
     def set_velocity(self, twist: Twist) -> None:
-        """Move as a whole with that twist of the model frame; joints go on turning."""
+        """Move as a whole with that twist of the model frame; joints keep turning."""
         for body in self.bodies:
             if not body.tree.fixed_base:
                 body.set_twist(twist, self.pose.position)

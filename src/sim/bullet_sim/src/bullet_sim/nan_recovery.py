@@ -1,6 +1,6 @@
-"""Recovery when a model's state is no longer finite: the model is reset, the world continues.
+"""Recovery when a model's state is not finite: the model is reset, the world continues.
 
-In the engine one body without a place (NaN) takes the ground from all others: they fall through.
+In the engine, one body with a NaN position makes all others fall through the ground.
 """
 
 import logging
@@ -16,7 +16,7 @@ log = logging.getLogger(__name__)
 
 
 def recover_from_nan(client: PhysicsClient, models: Iterable[Model]) -> None:
-    """Put what has no place back to where it was spawned, and all others in anew, as they move."""
+    """Reset models that are not finite to their spawn pose, and reload all others as they move."""
     client.auto_disable.found_nan = False
     models = list(models)
     broken = [model for model in models
@@ -28,7 +28,7 @@ def recover_from_nan(client: PhysicsClient, models: Iterable[Model]) -> None:
                 "are far too small", model.name)
         model.has_recovered = True
     lost = {model.name: model.initial_pose for model in broken}
-    lost |= {model.name: model.pose for model in models if model.static}  # may be hit
+    lost |= {model.name: model.pose for model in models if model.static}  # may be affected
     for model in models:
         for body in model.bodies if model.name in lost else ():
             body.unload()
@@ -43,9 +43,9 @@ def recover_from_nan(client: PhysicsClient, models: Iterable[Model]) -> None:
 
 
 def lost_models(models: Iterable[Model], error: EngineError, logged: set[str]) -> list[str]:
-    """After an error of the engine: names of the models of which it has lost a body.
+    """After an error of the engine: the names of the models of which it has lost a body.
 
-    Each is a line in the log; so is an error that has no such cause, once: it goes into `logged`.
+    Each is a line in the log; an error without such a cause is one, once: it goes into `logged`.
     """
     lost = [model.name for model in models if any(map(_is_lost, model.bodies))]
     for name in lost:

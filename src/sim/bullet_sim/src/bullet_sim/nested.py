@@ -12,11 +12,11 @@ SCOPE = "::"
 
 
 class NestedModel:
-    """A model without what is in models nested in it; with an empty `name`, the outermost."""
+    """A model without the models nested in it; with an empty `name`, the outermost one."""
 
     def __init__(self, model: Model, name: str = ""):
         self.model = model
-        self.name = name  # nested model, scoped by those around it but for the outermost
+        self.name = name  # nested model, scoped by those around it except the outermost
         self._scope = f"{name}{SCOPE}" if name else ""
         self.child_names = [
             child.removeprefix(self._scope) for child in model.description.child_models
@@ -40,17 +40,17 @@ class NestedModel:
         return [joint for joint in self.model.description.joints if self.is_own(joint.name)]
 
     def unscoped(self, name: str) -> str:
-        """A link's or joint's name as it is inside of this model."""
+        """A link's or joint's name inside this model."""
         return name.removeprefix(self._scope)
 
     def is_own(self, name: str) -> bool:
-        """Whether a link or joint of that name is in this model, and in none inside of it."""
+        """Whether a link or joint of that name is in this model, and in none nested in it."""
         inner = [f"{self._scope}{child}{SCOPE}" for child in self.child_names]
         return name.startswith(self._scope) and not name.startswith(tuple(inner))
 
     @property
     def pose(self) -> Pose:
-        """Its frame in the world: it stays where its first link has it."""
+        """Its frame in the world, which keeps its pose relative to its first link."""
         if not self.name:
             return self.model.pose
         frame, first = self.model.description.child_poses[self.name], self._first()
@@ -74,7 +74,7 @@ class NestedModel:
 
 
 def find_nested_model(models: Iterable[Model], name: str) -> NestedModel | None:
-    """A model by its name, or a nested one as `outer::nested` or, unscoped, the first there is."""
+    """A model by its name, or a nested one as `outer::nested` or, unscoped, the first found."""
     nested = None
     for model in models:
         if name == model.name:

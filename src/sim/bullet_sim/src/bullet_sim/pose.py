@@ -1,4 +1,4 @@
-"""Rigid poses: a position in metres and a unit quaternion (x, y, z, w), composed as frames are."""
+"""Rigid poses: a position in metres and a unit quaternion (x, y, z, w), composed like frames."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Pose:
 
     @staticmethod
     def from_xyz_rpy(xyz: Sequence[float], rpy: Sequence[float] = (0.0, 0.0, 0.0)) -> Pose:
-        """URDF's and SDF's six numbers: metres, and roll, pitch, yaw about fixed axes in rad."""
+        """From URDF's and SDF's numbers: metres, and roll, pitch, yaw about fixed axes in rad."""
         return Pose(_triple(xyz), quaternion_from_rpy(*rpy))
 
     def __mul__(self, other: Pose) -> Pose:
@@ -30,13 +30,13 @@ class Pose:
         return Pose((px + x, py + y, pz + z), multiply(self.orientation, other.orientation))
 
     def inverse(self) -> Pose:
-        """The same relation seen from the other frame."""
+        """The pose of the other frame in this one."""
         back = conjugate(self.orientation)
         x, y, z = rotate(back, self.position)
         return Pose((-x, -y, -z), back)
 
     def transform(self, point: Sequence[float]) -> Vector3:
-        """A point of this frame, in the frame this pose is given in."""
+        """A point in this frame, transformed into the frame in which this pose is given."""
         x, y, z = rotate(self.orientation, point)
         px, py, pz = self.position
         return (px + x, py + y, pz + z)
@@ -88,7 +88,7 @@ def normalised(q: Sequence[float]) -> Quaternion:
 
 
 def rotate(q: Quaternion, v: Sequence[float]) -> Vector3:
-    """Vector `v` turned by `q`."""
+    """Vector `v` rotated by `q`."""
     x, y, z, w = q
     vx, vy, vz = v
     tx, ty, tz = 2 * (y * vz - z * vy), 2 * (z * vx - x * vz), 2 * (x * vy - y * vx)
@@ -132,13 +132,13 @@ def rotation_matrix(q: Quaternion) -> np.ndarray:
 
 
 def symmetric_matrix(six: Sequence[float]) -> np.ndarray:
-    """(3, 3) of a tensor's xx, xy, xz, yy, yz, zz."""
+    """(3, 3) matrix of a tensor's xx, xy, xz, yy, yz, zz."""
     xx, xy, xz, yy, yz, zz = six
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
 def shortest_angular_distance(start: float, to: float) -> float:
-    """The turn that leads from one angle to the other, in (-pi, pi], rad."""
+    """The angle from `start` to `to`, in (-pi, pi], rad."""
     turn = math.fmod(to - start, math.tau)
     if turn <= -math.pi:
         return turn + math.tau

@@ -1,4 +1,4 @@
-"""Where the wall-clock time goes: a stopwatch for each stage of the work."""
+"""Measures wall time: a stopwatch for each stage of the work."""
 
 import threading
 import time
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass
 class Stage:
-    """What one stage has cost so far; wall time in s."""
+    """The cost of one stage so far; wall time in s."""
 
     count: int = 0
     total: float = 0.0
@@ -18,14 +18,14 @@ class Stage:
 
 
 class Profiler:
-    """Stages by name. Several threads may add at once, each to stages of its own."""
+    """Stages by name. Several threads may add at once, each to its own stages."""
 
     def __init__(self):
         self._stages: dict[str, Stage] = defaultdict(Stage)
         self._thread = threading.local()
 
     def add(self, name: str, seconds: float, count: int = 1) -> None:
-        """Something was done `count` times in so many seconds of wall time."""
+        """Add `count` executions that took so many seconds of wall time."""
         stage = self._stages[name]
         stage.count += count
         stage.total += seconds
@@ -33,9 +33,9 @@ class Profiler:
 
     @contextmanager
     def measure(self, name: str) -> Iterator[None]:
-        """Time the `with` block, less what is measured separately inside it."""
+        """Time the `with` block, without what is measured separately inside it."""
         outer = getattr(self._thread, "inside", 0.0)
-        self._thread.inside = 0.0  # s, of this thread, measured inside the present block
+        self._thread.inside = 0.0  # s, of this thread, measured inside the current block
         start = time.perf_counter()
         try:
             yield
@@ -49,7 +49,7 @@ class Profiler:
         return {name: stage.total for name, stage in list(self._stages.items())}
 
     def table(self, elapsed: float) -> str:
-        """A row for each stage, the costliest first; `elapsed` is the wall time (s) it all took."""
+        """A row for each stage, the costliest first; `elapsed` is the total wall time (s)."""
         head = f"{'stage':<12}{'times':>9}{'ms each':>10}{'worst ms':>10}{'share':>8}"
         rows = sorted(self._stages.items(), key=lambda item: -item[1].total)
         return "\n".join([head] + [

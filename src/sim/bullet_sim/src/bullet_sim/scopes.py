@@ -1,6 +1,6 @@
-"""Names of parts with those of their models before them: `model::link`.
+"""Scoped names of parts, with the names of their models in front: `model::link`.
 
-A model's own name may hold `::`, so that a name alone does not say where the model's ends.
+A model's own name may contain `::`, so a name alone does not tell where the model's ends.
 """
 
 from collections.abc import Iterator, Mapping
@@ -47,7 +47,7 @@ def find_frame(models: Mapping[str, Model], name: str) -> tuple[Pose, Twist]:
 
 
 def owners(models: Mapping[str, Model], name: str) -> Iterator[tuple[Model, str]]:
-    """Models that a scoped name may begin with, the longest first, and what is left of it."""
+    """Models with which a scoped name may begin, the longest first, and the rest of it."""
     words = name.split(SCOPE)
     for count in range(len(words) - 1, 0, -1):
         model = models.get(SCOPE.join(words[:count]))
@@ -56,11 +56,11 @@ def owners(models: Mapping[str, Model], name: str) -> Iterator[tuple[Model, str]
 
 
 def light_name(link: Link, light: LightDescription) -> str:
-    """Name in the world of a light that a link carries."""
+    """Name in the world of a light on a link."""
     return f"{link.scoped_name}{SCOPE}{light.name}"
 
 
 def carried_lights(model: Model) -> list[str]:
-    """Names in the world of all lights that a model carries."""
+    """Names in the world of all lights on a model."""
     return [light_name(link, light) for link in model.links.values()
             for light in link.description.lights]

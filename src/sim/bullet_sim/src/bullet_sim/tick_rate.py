@@ -1,4 +1,4 @@
-"""When something that has a rate is due, counted in physics steps."""
+"""Decides when something with a rate is due, counted in physics steps."""
 
 import math
 
@@ -6,13 +6,13 @@ from bullet_sim.errors import SimulationError
 
 
 class TickRate:
-    """Due `rate_hz` times a simulated second; 0 means every step.
+    """Due `rate_hz` times per simulated second; 0 means every step.
 
-    A period that is no whole number of steps alternates between two lengths, so that the long-run
-    rate is exact: 30 Hz at 1 kHz is due after 34, 67, 100 … steps (gazebo_ros_diff_drive.cpp,
-    UpdateChild). With `whole_steps` the period is rounded up to steps: every 34, as where it is
-    counted from the last time (gazebo_ros_p3d.cpp, UpdateChild). SimulationError for a rate that is
-    negative or not finite.
+    A period that is not a whole number of steps alternates between two lengths, so that the
+    long-run rate is exact: 30 Hz at 1 kHz is due after 34, 67, 100 … steps
+    (gazebo_ros_diff_drive.cpp, UpdateChild). With `whole_steps` the period is rounded up: every 34
+    steps, as if counted from the last time (gazebo_ros_p3d.cpp, UpdateChild). SimulationError for a
+    rate that is negative or not finite.
     """
 
     def __init__(self, rate_hz: float, timestep: float, origin: int = 0,
@@ -24,7 +24,7 @@ class TickRate:
         self.restart(origin, timestep)
 
     def restart(self, tick: int, timestep: float | None = None) -> None:
-        """Count from here, if wanted in steps of another length (s)."""
+        """Count from here, if given with another step length (s)."""
         self._origin = tick
         if timestep is not None:
             every = self.rate_hz == 0

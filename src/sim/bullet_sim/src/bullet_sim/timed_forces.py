@@ -1,4 +1,4 @@
-"""Wrenches on links and efforts on joints that act for a while (Gazebo's apply_body_wrench)."""
+"""Wrenches on links and efforts on joints for a limited time (Gazebo's apply_body_wrench)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ class Span:
     duration: float
 
     def has_begun(self, time: float, slack: float) -> bool:
-        """Whether it acts in a step that ends at `time`, or did."""
+        """Whether it acts in a step that ends at `time`, or has acted before."""
         return time > self.start - slack
 
     def is_over(self, time: float, slack: float) -> bool:
-        """Whether it does not act in that step any more; both ends belong to the span."""
+        """Whether it no longer acts in that step; both ends belong to the span."""
         return self.duration >= 0 and time > self.start + self.duration + slack
 
 
@@ -37,7 +37,7 @@ class Wrench:
 
 @dataclass(frozen=True, eq=False)
 class Effort:
-    """Beside what drives the joint anyway; cut to the joint's own effort limit."""
+    """Added to the joint's drive; cut to the joint's own effort limit."""
 
     model: Model
     joint: Joint
@@ -46,7 +46,7 @@ class Effort:
 
 
 class TimedForces:
-    """All that act or are to act, in the order of the requests."""
+    """All that act or will act, in the order of the requests."""
 
     def __init__(self):
         self.wrenches: list[Wrench] = []
@@ -56,12 +56,12 @@ class TimedForces:
         return bool(self.wrenches or self.efforts)
 
     def apply(self, time: float, timestep: float) -> None:
-        """Have the step that ends at `time` feel them; those that are over are forgotten.
+        """Apply them in the step that ends at `time`; those that are over are dropped.
 
-        Of several wrenches on one link the last acts: gazebo_ros_api_plugin.cpp,
+        Of several wrenches on one link only the last acts: gazebo_ros_api_plugin.cpp,
         wrenchBodySchedulerSlot, sets and does not add. Efforts on one joint add up.
         """
-        slack = timestep / 1000  # of what a sum of seconds may be off
+        slack = timestep / 1000  # possible error of a sum of seconds
         self.wrenches = [job for job in self.wrenches if not job.span.is_over(time, slack)]
         self.efforts = [job for job in self.efforts if not job.span.is_over(time, slack)]
         felt = {job.link: job for job in self.wrenches if job.span.has_begun(time, slack)}
@@ -72,10 +72,10 @@ class TimedForces:
                 job.joint.add_effort(job.effort)
 
     def drop(self, unwanted: Callable[[Wrench | Effort], bool]) -> None:
-        """Forget those, whether they act or wait."""
+        """Drop those that act or wait and are `unwanted`."""
         self.wrenches = [job for job in self.wrenches if not unwanted(job)]
         self.efforts = [job for job in self.efforts if not unwanted(job)]
 
     def drop_model(self, model: Model) -> None:
-        """Forget all of a model."""
+        """Drop all of a model."""
         self.drop(lambda job: model is (job.link.model if isinstance(job, Wrench) else job.model))

@@ -1,4 +1,4 @@
-"""Velocities of rigid bodies, and what they are at other points and in other frames."""
+"""Velocities of rigid bodies, and their values at other points and in other frames."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from bullet_sim.pose import Pose, Vector3, conjugate, rotate
 
 @dataclass(frozen=True)
 class Twist:
-    """Velocity of a frame's origin and its rate of turn, both in world axes."""
+    """Velocity of a frame's origin and its angular velocity, both in world axes."""
 
     linear: Vector3 = (0.0, 0.0, 0.0)  # m/s
     angular: Vector3 = (0.0, 0.0, 0.0)  # rad/s
@@ -37,7 +37,7 @@ def cross(a, b) -> Vector3:
 
 
 def shifted_twist(twist: Twist, at: Vector3, to: Vector3) -> Twist:
-    """The same rigid motion, seen at another point."""
+    """The same rigid motion, at another point."""
     ax, ay, az = twist.angular
     x, y, z = (t - a for t, a in zip(to, at, strict=True))
     linear = twist.linear
@@ -48,12 +48,12 @@ def shifted_twist(twist: Twist, at: Vector3, to: Vector3) -> Twist:
 
 
 def twist_difference(a: Twist, b: Twist) -> Twist:
-    """What `a` is more than `b`."""
+    """`a` minus `b`."""
     return Twist(tuple(x - y for x, y in zip(a.linear, b.linear, strict=True)),
                  tuple(x - y for x, y in zip(a.angular, b.angular, strict=True)))
 
 
 def twist_in(pose: Pose, twist: Twist) -> Twist:
-    """World-axes twist, turned into the axes of `pose`."""
+    """A world-axes twist, rotated into the axes of `pose`."""
     back = conjugate(pose.orientation)
     return Twist(rotate(back, twist.linear), rotate(back, twist.angular))

@@ -75,7 +75,7 @@ class World:
         return self.tick * self.timestep
 
     def step(self, count: int = 1) -> None:
-        """So many steps forward; while paused, time does not advance."""
+        """Advance by so many steps; while paused, time does not advance."""
         if self.paused or count < 1:
             return
         if self.is_at_rest and not (self.each_step or self.forces or self._actors):
@@ -113,14 +113,14 @@ class World:
             function()
 
     def delete_lost_models(self, error: EngineError) -> None:
-        """After an error of the engine: models that it has lost are deleted; the rest is kept."""
+        """After an error of the engine: delete the models that it has lost; the rest is kept."""
         for name in lost_models(self.models.values(), error, self._logged_errors):
             self._remove(self.models[name])
 
     def random(self, name: str, tick: int | None = None) -> np.random.Generator:
-        """A generator for a named thing at one tick (now): the same in every run with one seed.
+        """A generator for a name and a tick (default: now): the same in every run with one seed.
 
-        What was drawn before does not count, so that noise does not depend on who looked when.
+        It does not depend on earlier draws, so noise does not depend on who reads when.
         """
         tick = self.tick if tick is None else tick
         return np.random.default_rng([self.seed, zlib.crc32(name.encode()), tick])
@@ -131,7 +131,7 @@ class World:
               name: str | None = None) -> Model:
         """Add a model: its own pose is kept as an offset to `pose`.
 
-        gazebo_ros_api_plugin.cpp, updateSDFAttributes.
+        As gazebo_ros_api_plugin.cpp, updateSDFAttributes.
 
         NameTaken if there is a model of that name; SimulationError if the engine cannot
         hold it.
@@ -154,7 +154,7 @@ class World:
         self._moving = [model for model in self.models.values() if not model.static]
 
     def _show(self, model: Model) -> None:
-        """Put a model's visuals and lights into the scene."""
+        """Add a model's visuals and lights to the scene."""
         for link in model.links.values():
             self.scene.add_link((model.name, link.name), link.description.visuals, link.pose)
             for light in link.description.lights:
@@ -162,7 +162,7 @@ class World:
                                              pose=link.pose * light.pose))
 
     def delete(self, name: str) -> None:
-        """Remove a model. UnknownName without one of that name."""
+        """Remove a model. UnknownName if there is none of that name."""
         self._remove(self.model(name))
 
     def _remove(self, model: Model) -> None:
@@ -175,13 +175,13 @@ class World:
             if light in self.scene.lights:
                 self.scene.remove_light(light)
         self.forces.drop_model(model)
-        with ExitStack() as stack:  # all are called, also if removing or one of them fails
+        with ExitStack() as stack:  # all are called, even if removing or one of them fails
             for function in reversed(self.each_removal):
                 stack.callback(function, name)
             model.remove()
 
     def model(self, name: str) -> Model:
-        """The model of that name. UnknownName without one."""
+        """The model of that name. UnknownName if there is none."""
         if name not in self.models:
             raise UnknownName("model", name, self.models)
         return self.models[name]
@@ -189,26 +189,26 @@ class World:
     def link(self, name: str) -> Link:
         """A link by scoped name `model::link`, or by an unscoped name that only one model has.
 
-        UnknownName without one.
+        UnknownName if there is none.
         """
         return find_link(self.models, name)
 
     # --- reset
 
     def reset_models(self) -> None:
-        """Every model back to where it was spawned; time is kept (Gazebo's reset_world)."""
+        """Reset every model to where it was spawned; time is kept (Gazebo's reset_world)."""
         for model in self.models.values():
             model.reset()
 
     def reset_simulation(self) -> None:
-        """As `reset_models`, and time starts again where it began."""
+        """As `reset_models`, and time starts again from its initial value."""
         self.reset_models()
         self.tick = round(self._initial_time / self.timestep)
 
     # --- reads
 
     def update_scene(self) -> Scene:
-        """The scene with every moving link where it is now."""
+        """The scene with every moving link at its current pose."""
         for model in self.models.values():
             for name, (pose, _) in model.link_states().items():
                 self.scene.set_pose((model.name, name), pose)
@@ -219,14 +219,14 @@ class World:
         return cast_rays(self._client, starts, ends)
 
     def contacts(self) -> list[Contact]:
-        """What touched what in the last step; read from the engine when asked for."""
+        """The contacts of the last step; read from the engine when asked for."""
         return read_contacts(self._client, [
             (model.name, body) for model in self.models.values() for body in model.bodies])
 
     def configure_physics(self, **changes) -> None:
         """Change fields of the world's PhysicsDescription, and gravity (m/s^2): all or none.
 
-        SimulationError for values that are not possible.
+        SimulationError for impossible values.
         """
         gravity = changes.pop("gravity", self.description.gravity)
         physics = replace(self.description.physics, **changes)

@@ -1,1 +1,1 @@
-"""Costmaps: how dear it is to stand in each cell, and whether a footprint fits."""
+"""Costmaps: the cost of being in each cell, and whether a footprint fits."""

@@ -1,4 +1,4 @@
-"""What the numbers in a costmap mean, and the costmap that planners are given."""
+"""The meaning of a costmap's values, and the costmap that planners get."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ UNKNOWN = 255     # never seen
 
 @dataclass
 class Costmap(Cells):
-    """Costs of a plane; a layer may write into `cells`, a planner only reads them.
+    """Costs in a plane; a layer may write into `cells`, a planner only reads them.
 
     `cells` is uint8 (rows, columns), C-contiguous: FREE to LETHAL, or UNKNOWN; row 0 has the lowest
-    y and column 0 the lowest x. `resolution` is in m a cell, `origin` the (x, y), m, of the outer
-    corner of cell (0, 0) in the costmap's frame, which is never turned.
+    y and column 0 the lowest x. `resolution` is in m per cell, `origin` the (x, y), m, of the outer
+    corner of cell (0, 0) in the costmap's frame, whose axes the cells follow.
     """
 
     cells: np.ndarray
@@ -28,6 +28,6 @@ class Costmap(Cells):
     origin: tuple[float, float]
 
     def __post_init__(self) -> None:
-        """Raises ValueError for cells or sizes that make no costmap."""
+        """Raises ValueError if cells, resolution or origin make no valid costmap."""
         self.check_geometry("costmap", np.uint8)
         self.cells = np.ascontiguousarray(self.cells)

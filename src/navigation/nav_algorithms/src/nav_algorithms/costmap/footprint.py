@@ -1,8 +1,8 @@
-"""A robot's outline on a costmap: sizes, padding, and what it would cost to stand somewhere.
+"""A robot's footprint on a costmap: sizes, padding, and its cost at a pose.
 
-A footprint is (K, 2), m, the corners of a convex polygon in the base frame, either way round. Of
-a concave one, each row of cells counts from its outermost left to its outermost right point. Fewer
-than three corners mean a robot that is as large as what the costmap was inflated by.
+A footprint is (K, 2), m, the corners of a convex polygon in the base frame, in either order. A
+concave one is filled, in each row of cells, from its leftmost to its rightmost point. Fewer than
+three corners mean a round robot, as large as the costmap's inscribed radius.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ CIRCLE_CORNERS = 16
 
 
 def circle(radius: float) -> np.ndarray:
-    """The polygon that stands for a round robot, (16, 2), with its corners on the circle."""
+    """The polygon that represents a round robot, (16, 2), with its corners on the circle."""
     angles = np.arange(CIRCLE_CORNERS) * 2 * np.pi / CIRCLE_CORNERS
     return radius * np.stack((np.cos(angles), np.sin(angles)), axis=1)
 
 
 def padded(footprint: np.ndarray, padding: float) -> np.ndarray:
-    """The footprint with each coordinate moved by `padding`, m, away from the axis it is beside.
+    """The footprint with each coordinate moved by `padding`, m, away from the axis next to it.
 
-    A corner that lies on an axis stays on it, as in costmap_2d.
+    A corner on an axis stays on it, as in costmap_2d.
     """
     footprint = np.asarray(footprint, float)
     return footprint + np.sign(footprint) * padding
@@ -48,14 +48,14 @@ def radii(footprint: np.ndarray) -> tuple[float, float]:
 
 
 def reach(footprint: np.ndarray) -> float:
-    """How far the robot extends from its base frame's origin, m; 0 without an outline."""
+    """The circumscribed radius about the base frame's origin, m; 0 without a footprint."""
     return float(np.hypot(*np.asarray(footprint).reshape(-1, 2).T).max(initial=0.0))
 
 
 def free_radii(costmap: Costmap) -> np.ndarray:
-    """How far each cell's centre is from what must not be touched, in cells (rows, columns).
+    """Distance of each cell's centre from cells that must not be touched, in cells (rows, columns).
 
-    That is what is lethal, what was never seen, and what is outside; never inf.
+    Those are lethal cells, unknown cells and all outside the costmap; never inf.
     """
     shut = (costmap.cells == LETHAL) | (costmap.cells == UNKNOWN)
     rows, columns = (np.arange(size) + 0.5 for size in shut.shape)
@@ -64,10 +64,10 @@ def free_radii(costmap: Costmap) -> np.ndarray:
 
 
 def costs(costmap: Costmap, footprint: np.ndarray, poses: np.ndarray) -> np.ndarray:
-    """The dearest cell below a footprint at poses (N, 3) in the costmap's frame, int64 (N,).
+    """The highest cost below a footprint at poses (N, 3) in the costmap's frame, int64 (N,).
 
-    0 to 253; COLLISION where it covers a lethal cell, else OUTSIDE where it leaves the costmap,
-    else ON_UNKNOWN where it covers a cell never seen.
+    0 to 253; COLLISION if it covers a lethal cell, else OUTSIDE if it leaves the costmap, else
+    ON_UNKNOWN if it covers an unknown cell.
     """
     return costs_at(costmap.cells, costmap.resolution, *map(float, costmap.origin),
                     np.ascontiguousarray(footprint, float).reshape(-1, 2),
@@ -75,10 +75,10 @@ def costs(costmap: Costmap, footprint: np.ndarray, poses: np.ndarray) -> np.ndar
 
 
 def shrunk_to_fit(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray) -> np.ndarray | None:
-    """The footprint as it is where that is free; else the largest that is free, from 0.6 of it.
+    """The footprint itself if it is free; else the largest free one, down to 0.6 of its size.
 
-    An obstacle makes its whole cell lethal, so a robot that stands close to one may seem to touch
-    it. With this footprint it may leave, and come no closer. None: it stands in the obstacle.
+    An obstacle makes its whole cell lethal, so a robot close to one may seem to touch it. With this
+    footprint it may leave, but come no closer. None: the robot is in the obstacle.
     """
     for scale in np.arange(1.0, 0.59, -0.02):
         if costs(costmap, scale * footprint, pose)[0] >= 0:
@@ -90,7 +90,7 @@ def shrunk_to_fit(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray) -> 
 
 @compiled("i8(u1[:,::1], f8, f8)")
 def _cost_of_centre(cells, column, row):
-    """For robots without an outline: the cell that the centre, in cells, is in."""
+    """For robots without a footprint: the cost of the cell with the centre, which is in cells."""
     if not (0.0 <= column < cells.shape[1] and 0.0 <= row < cells.shape[0]):
         return OUTSIDE
     cost = cells[int(row), int(column)]
@@ -101,7 +101,7 @@ def _cost_of_centre(cells, column, row):
 
 @compiled("void(f8[:,::1], i8, i8, f8, f8, f8, f8)")
 def _widen(extents, bottom, top, u0, v0, u1, v1):
-    """Takes an edge, in cells, into the least and greatest column of each row that it is in."""
+    """Extend the lowest and highest column of each row that an edge, in cells, passes through."""
     if v0 > v1:
         u0, v0, u1, v1 = u1, v1, u0, v0
     slope = (u1 - u0) / (v1 - v0) if v1 > v0 else 0.0
@@ -115,11 +115,11 @@ def _widen(extents, bottom, top, u0, v0, u1, v1):
 
 @compiled("i8(u1[:,::1], f8, f8, f8, f8[:,::1], f8, f8, f8)")
 def cost_at(cells, resolution, origin_x, origin_y, footprint, x, y, yaw):
-    """As `costs`, of one pose and for other compiled code.
+    """As `costs`, for one pose and for other compiled code.
 
-    Each row of cells that the polygon meets is looked at from the least to the greatest column
-    that an edge has in it: all cells that are touched, so an obstacle in no cell is in no part
-    of the robot.
+    Each row of cells that the polygon meets is checked from the lowest to the highest column that
+    an edge passes through: all cells that are touched, so no part of the robot is in an obstacle
+    that was not checked.
     """
     column, row = (x - origin_x) / resolution, (y - origin_y) / resolution
     corners = len(footprint)

@@ -1,4 +1,4 @@
-"""The layer that keeps the robot away from obstacles: costs that fall with the distance."""
+"""The layer that keeps the robot away from obstacles: costs that decrease with the distance."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ def cost_table(resolution: float, inscribed_radius: float, inflation_radius: flo
                scaling: float) -> np.ndarray:
     """Costs, uint8, by the squared distance, in cells, from the nearest obstacle's cell.
 
-    costmap_2d's law: LETHAL in it, INSCRIBED up to the inscribed radius, m, and from there
-    252 exp(-scaling (distance - inscribed radius)), `scaling` in 1/m. Ends with a FREE beyond the
-    inflation radius, m, which is rounded up to whole cells.
+    As costmap_2d: LETHAL in it, INSCRIBED up to the inscribed radius, m, and beyond that
+    252 exp(-scaling (distance - inscribed radius)), `scaling` in 1/m. The last value is FREE, for
+    all beyond the inflation radius, m, which is rounded up to whole cells.
     """
     reach = max(0, math.ceil(inflation_radius / resolution))
     away = np.sqrt(np.arange(reach ** 2 + 1)) * resolution
@@ -29,11 +29,11 @@ def cost_table(resolution: float, inscribed_radius: float, inflation_radius: flo
 
 
 class InflationLayer(Layer):
-    """Writes the costs about every LETHAL cell that the layers below left; costmap_2d's."""
+    """Writes the costs around every LETHAL cell that the layers below left, as in costmap_2d."""
 
     def __init__(self, name: str, inflation_radius: float = 0.55,
                  cost_scaling_factor: float = 10.0, inflate_unknown: bool = False) -> None:
-        """Radius in m, factor in 1/m; `inflate_unknown`: unknown cells get every cost, too."""
+        """Radius in m, factor in 1/m; `inflate_unknown`: any cost replaces UNKNOWN."""
         super().__init__(name)
         self._radius, self._scaling = inflation_radius, cost_scaling_factor
         self._inflate_unknown = inflate_unknown
@@ -44,27 +44,27 @@ class InflationLayer(Layer):
 
     def change(self, inflation_radius: float, cost_scaling_factor: float,
                inflate_unknown: bool, enabled: bool) -> None:
-        """Other settings; the next update writes everything again."""
+        """New settings; the next update writes everything again."""
         self._radius, self._scaling = inflation_radius, cost_scaling_factor
         self._inflate_unknown, self.enabled = inflate_unknown, enabled
         self._begin_anew()
 
     def match(self, master: Costmap) -> None:
-        """Another resolution: another number of cells."""
+        """A new resolution: distances in cells change."""
         self._resolution = master.resolution
         self._begin_anew()
 
     def set_footprint(self, corners: np.ndarray) -> None:
-        """The inscribed radius is this footprint's."""
+        """Use the inscribed radius of this footprint."""
         self._inscribed_radius = footprint.radii(corners)[0] if len(corners) > 2 else 0.0
         self._begin_anew()
 
     def reset(self) -> None:
-        """Everything again."""
+        """Write everything again."""
         self._all_is_new = True
 
     def update_bounds(self, pose: np.ndarray, bounds: Bounds) -> None:
-        """As far around what changes as costs reach."""
+        """Widen by the distance to which costs reach."""
         if self._all_is_new:
             bounds.add_all()
             self._all_is_new = False
@@ -72,7 +72,7 @@ class InflationLayer(Layer):
             bounds.widen(self._reach() * self._resolution)
 
     def update_costs(self, master: Costmap, window: Window) -> None:
-        """Raises costs in the window by the obstacles in it and around it."""
+        """Raise costs in the window, by the obstacles in it and around it."""
         if not self.enabled or self._radius <= 0:
             return
         reach = self._reach()

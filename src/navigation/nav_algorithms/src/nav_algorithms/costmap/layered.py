@@ -1,4 +1,4 @@
-"""Layers put together into one costmap, of which only what changed is written again."""
+"""Layers combined into one costmap; an update only rewrites what changed."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from nav_algorithms.costmap.layer import Bounds, Layer, Window
 class LayeredCostmap:
     """The master costmap and its layers, lowest first.
 
-    With `rolling` the robot stays in the middle: the origin moves by whole cells, and what layers
-    remember moves with the world. With `track_unknown` a cell of which no layer knows is UNKNOWN,
-    else FREE. Not safe on several threads.
+    With `rolling` the robot stays in the middle: the origin moves by whole cells, and the layers'
+    data stay in place in the world. With `track_unknown` a cell that no layer knows is UNKNOWN,
+    else FREE. Not thread-safe.
     """
 
     def __init__(self, layers: Sequence[Layer], shape: tuple[int, int], resolution: float,
@@ -26,11 +26,11 @@ class LayeredCostmap:
         self.rolling = rolling
         self.default = UNKNOWN if track_unknown else FREE
         self.resize(shape, resolution, origin)
-        self.newest = self.master  # as the latest update left it, whatever was resized since
+        self.newest = self.master  # as of the latest update, even if it was resized since
 
     def resize(self, shape: tuple[int, int], resolution: float,
                origin: tuple[float, float]) -> None:
-        """A new master, and every layer begins anew; the next update writes all of it."""
+        """Make a new master, and every layer starts again; the next update writes all of it."""
         self.master = Costmap(np.full(shape, self.default, np.uint8), resolution, origin)
         self._all_is_new = True
         for layer in self.layers:
@@ -38,7 +38,7 @@ class LayeredCostmap:
 
     def fits(self, shape: tuple[int, int], resolution: float,
              origin: tuple[float, float]) -> bool:
-        """Whether the master has this size already."""
+        """Whether the master already has this size, resolution and origin."""
         return (self.master.cells.shape == tuple(shape) and self.master.resolution == resolution
                 and tuple(self.master.origin) == tuple(origin))
 
@@ -48,7 +48,7 @@ class LayeredCostmap:
             layer.set_footprint(footprint)
 
     def update(self, pose: np.ndarray) -> Window | None:
-        """Takes in what is new with the robot at `pose` (3,); the cells written, or None."""
+        """Take in new data with the robot at `pose` (3,); returns the cells written, or None."""
         moved = self.rolling and self._centre_on(pose)
         bounds = Bounds()
         if self._all_is_new or moved:
@@ -66,17 +66,17 @@ class LayeredCostmap:
         return window
 
     def reset(self) -> None:
-        """All layers forget what sensors said; the next update writes everything."""
+        """All layers forget sensor data; the next update writes everything."""
         for layer in self.layers:
             layer.reset()
         self._all_is_new = True
 
     def write_all(self) -> None:
-        """The next update writes everything."""
+        """Let the next update write everything."""
         self._all_is_new = True
 
     def _centre_on(self, pose: np.ndarray) -> bool:
-        """Rolls until the robot is in the middle, but for part of a cell; whether it rolled."""
+        """Roll until the robot is in the middle, to within a cell; returns whether it rolled."""
         master = self.master
         size = np.array(master.cells.shape[::-1]) * master.resolution
         columns, rows = np.floor((pose[:2] - size / 2 - master.origin) / master.resolution

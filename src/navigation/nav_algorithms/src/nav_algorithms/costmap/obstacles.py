@@ -1,4 +1,4 @@
-"""The layer that sensors fill: obstacles where a ray ended, free cells along its way."""
+"""The layer of sensor data: obstacles where rays end, free cells along the rays."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from nav_algorithms.poses import transform_points
 
 @dataclass(frozen=True)
 class Observation:
-    """What one sensor saw at one moment, in the costmap's frame, m.
+    """One observation of one sensor, in the costmap's frame, m.
 
-    `points` (N, 3) are where its rays ended, `origin` (3,) where they began. Points nearer than
-    `obstacle_range` become obstacles; rays free the cells up to `raytrace_range`.
+    `points` (N, 3) are the ends of its rays, `origin` (3,) is their start. Points nearer than
+    `obstacle_range` become obstacles; rays clear the cells up to `raytrace_range`.
     """
 
     origin: np.ndarray
@@ -28,13 +28,13 @@ class Observation:
 
 
 class ObstacleLayer(Layer):
-    """Remembers obstacles until a ray goes through them; costmap_2d's ObstacleLayer."""
+    """Remembers obstacles until a ray passes through them, as costmap_2d's ObstacleLayer."""
 
     from_sensors = True
 
     def __init__(self, name: str, track_unknown: bool = False, combination_method: int = MAXIMUM,
                  max_obstacle_height: float = 2.0, clears_footprint: bool = True) -> None:
-        """`max_obstacle_height`, m: what is higher is no obstacle; the rest as in costmap_2d."""
+        """`max_obstacle_height`, m: higher points are ignored; the others as in costmap_2d."""
         super().__init__(name)
         self.combination_method = combination_method
         self.max_obstacle_height = max_obstacle_height
@@ -48,25 +48,25 @@ class ObstacleLayer(Layer):
         self._all_is_new = False
 
     def match(self, master: Costmap) -> None:
-        """Begins anew in the master's size."""
+        """Start again in the master's size."""
         self.own = Costmap(np.full(master.cells.shape, self._default, np.uint8),
                            master.resolution, master.origin)
 
     def shift(self, rows: int, columns: int, origin: tuple[float, float]) -> None:
-        """Obstacles stay where they are in the world."""
+        """Obstacles keep their place in the world."""
         self.own = Costmap(shifted(self.own.cells, rows, columns, self._default),
                            self.own.resolution, origin)
 
     def set_footprint(self, footprint: np.ndarray) -> None:
-        """What the robot stands on is free."""
+        """The cells below the robot are free."""
         self._footprint = np.asarray(footprint, float)
 
     def observe(self, marking: Sequence[Observation], clearing: Sequence[Observation]) -> None:
-        """What the next update goes by; clearing comes before marking."""
+        """Set the observations for the next update, which clears before it marks."""
         self._marking, self._clearing = marking, clearing
 
     def update_bounds(self, pose: np.ndarray, bounds: Bounds) -> None:
-        """Clears, then marks, then finds where the robot stands."""
+        """Clear, then mark, then find where the robot stands."""
         if not self.enabled:
             return
         if self._all_is_new:
@@ -81,7 +81,7 @@ class ObstacleLayer(Layer):
             bounds.add(self._outline)
 
     def update_costs(self, master: Costmap, window: Window) -> None:
-        """Frees what the robot stands on and puts this layer over the master's."""
+        """Free the cells below the robot and combine this layer into the master."""
         if not self.enabled:
             return
         if self.clears_footprint and len(self._outline) > 2:
@@ -89,12 +89,12 @@ class ObstacleLayer(Layer):
         combine(master.cells[window], self.own.cells[window], self.combination_method)
 
     def reset(self) -> None:
-        """Forgets all obstacles."""
+        """Forget all obstacles."""
         self.match(self.own)
         self._all_is_new = True
 
     def clear_area(self, low: np.ndarray, high: np.ndarray, invert: bool = False) -> None:
-        """Forgets what lies outside (inverted: inside) the rectangle from `low` to `high`, m."""
+        """Forget everything outside (inverted: inside) the rectangle from `low` to `high`, m."""
         self._forget(_forgotten(self.own, low, high, invert))
         self._all_is_new = True
 
@@ -130,14 +130,14 @@ class ObstacleLayer(Layer):
 
 
 def _cut(start: np.ndarray, ends: np.ndarray, reach: float) -> np.ndarray:
-    """Ends (N, D) of rays from `start` (D,), no farther than `reach`."""
+    """Ends (N, D) of rays from `start` (D,), cut at the distance `reach`."""
     way = ends - start
     lengths = np.sqrt((way ** 2).sum(axis=1))
     return start + way * np.minimum(1.0, reach / np.maximum(lengths, 1e-9))[:, None]
 
 
 def _forgotten(costmap: Costmap, low: np.ndarray, high: np.ndarray, invert: bool) -> np.ndarray:
-    """Which cells, bool (rows, columns), lie outside (inverted: inside) a rectangle, m."""
+    """Which cells, bool (rows, columns), are outside (inverted: inside) a rectangle, m."""
     rows, columns = costmap.cells.shape
     x = (np.arange(columns) + 0.5) * costmap.resolution + costmap.origin[0]
     y = (np.arange(rows) + 0.5) * costmap.resolution + costmap.origin[1]

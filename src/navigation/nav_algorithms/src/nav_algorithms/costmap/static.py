@@ -1,4 +1,4 @@
-"""The layer that a map fills."""
+"""The layer of the static map."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ def costs_of(occupancy: np.ndarray, lethal_threshold: int = 100, unknown_value: 
              trinary: bool = True, track_unknown: bool = True) -> np.ndarray:
     """Costs, uint8, of a map's values, int8, both of any shape; costmap_2d's StaticLayer.
 
-    `unknown_value` is compared as an unsigned byte, so -1 and 255 are one. Without `trinary` what
-    lies between FREE and the threshold grows with the value.
+    `unknown_value` is compared as an unsigned byte, so -1 and 255 are the same. Without `trinary`
+    costs between FREE and the threshold increase with the value.
     """
     values = np.asarray(occupancy, np.int8).view(np.uint8)
     threshold = max(min(lethal_threshold, 100), 0)
@@ -30,10 +30,10 @@ def costs_of(occupancy: np.ndarray, lethal_threshold: int = 100, unknown_value: 
 
 
 class StaticLayer(Layer):
-    """Copies a map into the master; where that rolls, by the map's place in its frame.
+    """Copies a map into the master; in a rolling one, by the map's pose in the master's frame.
 
-    `set_map` needs the master in the map's size unless it rolls. `frame_in_map` (3,) is the
-    master's frame as seen from the map's; None while that is not known: then nothing is copied.
+    `set_map` needs a master of the map's size unless it rolls. `frame_in_map` (3,) is the pose of
+    the master's frame in the map's; None while it is unknown: then nothing is copied.
     """
 
     def __init__(self, name: str, rolling: bool = False, use_maximum: bool = False) -> None:
@@ -46,16 +46,16 @@ class StaticLayer(Layer):
 
     @property
     def has_map(self) -> bool:
-        """Whether a map has come."""
+        """Whether a map was set."""
         return self._map is not None
 
     def set_map(self, grid: OccupancyGrid, costs: np.ndarray) -> None:
-        """A new map, with the `costs` (rows, columns) that `costs_of` gave."""
+        """Set a map, with the `costs` (rows, columns) from `costs_of`."""
         self._map = Costmap(costs, grid.resolution, grid.origin)
         self._changed.add_all()
 
     def change_map(self, row: int, column: int, costs: np.ndarray) -> None:
-        """New costs (rows, columns) of a part; raises ValueError if it does not fit in the map."""
+        """Set new costs (rows, columns) of a part; raises ValueError if it is not within a map."""
         if self._map is None or not (
                 row >= 0 and column >= 0
                 and row + costs.shape[0] <= self._map.cells.shape[0]
@@ -67,11 +67,11 @@ class StaticLayer(Layer):
         self._changed.add(self._map.centres_of(corners))
 
     def reset(self) -> None:
-        """The map is copied anew."""
+        """Copy the map again."""
         self._changed.add_all()
 
     def update_bounds(self, pose: np.ndarray, bounds: Bounds) -> None:
-        """What changed in the map; where the master rolls, everything."""
+        """Add what changed in the map; in a rolling master, everything."""
         if self._map is None or not self.enabled:
             return
         if self._rolling:
@@ -81,10 +81,10 @@ class StaticLayer(Layer):
         self._changed = Bounds()
 
     def update_costs(self, master: Costmap, window: Window) -> None:
-        """Copies, or takes the greater of the two with `use_maximum`.
+        """Copies the costs, or takes the maximum of both with `use_maximum`.
 
-        Then what the map does not know changes nothing; where the master rolls it counts as the
-        greatest cost, as upstream's.
+        With it, unknown cells of the map change nothing; in a rolling master they count as the
+        highest cost, as upstream.
         """
         if self._map is None or not self.enabled:
             return

@@ -1,4 +1,4 @@
-"""Lines and polygons drawn into cells."""
+"""Draws lines and polygons into cells."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from nav_algorithms.costmap.costs import FREE, UNKNOWN
 @compiled("void(u1[:,::1], i8, i8, i8[::1], i8[::1], u1)")
 def draw_lines(cells: np.ndarray, row: int, column: int, end_rows: np.ndarray,
                end_columns: np.ndarray, value: int) -> None:
-    """Writes `value` into the cells from (row, column) to each end, both ends with them.
+    """Write `value` into the cells from (row, column) to each end, both included.
 
-    By J. E. Bresenham, "Algorithm for computer control of a digital plotter" (1965): one cell a
+    J. E. Bresenham, "Algorithm for computer control of a digital plotter" (1965): one cell per
     step along the longer side, so that a ray along a wall does not clear the wall. Cells outside
-    are passed over.
+    are skipped.
     """
     rows, columns = cells.shape
     for i in range(end_rows.size):
@@ -43,7 +43,7 @@ def draw_lines(cells: np.ndarray, row: int, column: int, end_rows: np.ndarray,
 
 @compiled("i8(u2)")
 def count_bits(bits: int) -> int:
-    """How many of 16 bits are set."""
+    """The number of bits set, of 16."""
     count = 0
     while bits:
         bits &= bits - 1
@@ -55,9 +55,9 @@ def count_bits(bits: int) -> int:
 def clear_voxels(marked: np.ndarray, unknown: np.ndarray, cells: np.ndarray, start: np.ndarray,
                  ends: np.ndarray, levels: int, mark_threshold: int,
                  unknown_threshold: int) -> None:
-    """Takes the bits of all voxels from `start` (3,) to `ends` (N, 3) away, one a step.
+    """Clear the bits of all voxels from `start` (3,) to the `ends` (N, 3), one voxel per step.
 
-    Points are (column, row, level) in cells. Where at most `mark_threshold` marks are left in a
+    Points are (column, row, level) in cells. If at most `mark_threshold` marks are left in a
     column of voxels, its cell becomes FREE, or UNKNOWN with more than `unknown_threshold` unseen.
     """
     rows, columns = cells.shape
@@ -79,11 +79,11 @@ def clear_voxels(marked: np.ndarray, unknown: np.ndarray, cells: np.ndarray, sta
 
 
 def fill_polygon(cells: np.ndarray, corners: np.ndarray, value: int) -> None:
-    """Writes `value` into each cell that a convex polygon touches.
+    """Write `value` into each cell that a convex polygon touches.
 
-    `corners` (K, 2) are (column, row) in cells. Of a concave polygon, each row of cells is filled
-    from its outermost left to its outermost right point, as nav_algorithms.costmap.footprint
-    looks at it.
+    `corners` (K, 2) are (column, row) in cells. A concave polygon is filled, in each row of cells,
+    from its leftmost to its rightmost point, in the same way as
+    nav_algorithms.costmap.footprint reads the costs.
     """
     height, width = cells.shape
     u0, v0 = corners.T

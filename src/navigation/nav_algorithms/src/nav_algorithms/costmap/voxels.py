@@ -1,4 +1,4 @@
-"""The layer that sensors fill in three dimensions: a column of voxels above each cell."""
+"""The layer of 3D sensor data: a column of voxels above each cell."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ LEVELS = 16  # at most, one bit each
 
 @dataclass(frozen=True)
 class VoxelSettings:
-    """Under costmap_2d's names; m, and numbers of voxels in a column."""
+    """Parameters under costmap_2d's names; m, and numbers of voxels in a column."""
 
     origin_z: float
     z_resolution: float
@@ -26,22 +26,22 @@ class VoxelSettings:
 
 
 class VoxelLayer(ObstacleLayer):
-    """An obstacle is freed only by rays at its own height; costmap_2d's VoxelLayer."""
+    """An obstacle is only cleared by rays at its own height, as in costmap_2d's VoxelLayer."""
 
     def __init__(self, name: str, settings: VoxelSettings, **obstacle_settings: object) -> None:
-        """`obstacle_settings` as ObstacleLayer's."""
+        """`obstacle_settings` are those of ObstacleLayer."""
         super().__init__(name, **obstacle_settings)
         self.settings = settings
 
     def match(self, master: Costmap) -> None:
-        """Begins anew in the master's size: no voxel was seen."""
+        """Start again in the master's size: no voxel has been seen."""
         super().match(master)
         self._unseen = (1 << min(self.settings.z_voxels, LEVELS)) - 1
         self._marked = np.zeros(master.cells.shape, np.uint16)
         self._unknown = np.full(master.cells.shape, self._unseen, np.uint16)
 
     def change_settings(self, settings: VoxelSettings) -> None:
-        """Other voxels: if they lie elsewhere, all that was seen is forgotten."""
+        """Set new voxel parameters; if they move the voxels, all data are forgotten."""
         places = ("origin_z", "z_resolution", "z_voxels")
         moved = any(getattr(settings, name) != getattr(self.settings, name) for name in places)
         self.settings = settings
@@ -49,7 +49,7 @@ class VoxelLayer(ObstacleLayer):
             self.reset()
 
     def shift(self, rows: int, columns: int, origin: tuple[float, float]) -> None:
-        """Voxels stay where they are in the world."""
+        """Voxels keep their place in the world."""
         super().shift(rows, columns, origin)
         self._marked = shifted(self._marked, rows, columns, 0)
         self._unknown = shifted(self._unknown, rows, columns, self._unseen)
@@ -66,7 +66,7 @@ class VoxelLayer(ObstacleLayer):
                 / np.array([own.resolution, own.resolution, settings.z_resolution]))
 
     def _clear(self, observation: Observation, bounds: Bounds) -> None:
-        """Rays end two cells before the obstacle, as upstream's: its neighbours stay."""
+        """Rays end two cells before the obstacle, as upstream: cells next to it stay."""
         start = np.asarray(observation.origin, float)
         way = observation.points - start
         lengths = np.maximum(np.sqrt((way ** 2).sum(axis=1)), 1e-9)
@@ -84,7 +84,7 @@ class VoxelLayer(ObstacleLayer):
     def _mark(self, observation: Observation, bounds: Bounds) -> None:
         points = self._obstacles(observation)
         scaled = np.floor(self._scaled(points)).astype(np.int64)
-        levels = np.maximum(scaled[:, 2], 0)  # what lies below the floor counts as on it
+        levels = np.maximum(scaled[:, 2], 0)  # points below the floor count as on it
         cells = scaled[:, 1::-1]
         inside = self.own.contains(cells) & (levels < min(self.settings.z_voxels, LEVELS))
         where = tuple(cells[inside].T)

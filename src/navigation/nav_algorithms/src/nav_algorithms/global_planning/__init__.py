@@ -1,1 +1,1 @@
-"""Paths from where the robot is to where it shall be, through a whole costmap."""
+"""Paths from the robot to a goal, over a whole costmap."""

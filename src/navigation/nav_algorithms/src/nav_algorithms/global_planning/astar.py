@@ -1,4 +1,4 @@
-"""global_planner's planner: navfn's with its parts to choose from, A* among them."""
+"""global_planner's planner: like navfn's, with a choice of its parts, such as A*."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from nav_algorithms.global_planning.potential import crossing_costs
 
 @dataclass(frozen=True)
 class GlobalPlannerSettings:
-    """Names of global_planner/GlobalPlanner. Pictures belong to its node."""
+    """Parameters of global_planner/GlobalPlanner, except those of its topics."""
 
     allow_unknown: bool
     default_tolerance: float  # m, as navfn's
     use_dijkstra: bool        # else A*
-    use_quadratic: bool       # distances as the crow flies, else as the streets go
-    use_grid_path: bool       # from cell to cell, else along the slope
-    old_navfn_behavior: bool  # navfn's costs in place of the next three
-    lethal_cost: int          # from here on no cell is crossed
+    use_quadratic: bool       # interpolated distances in all directions, else along the grid
+    use_grid_path: bool       # from cell to cell, else along the gradient
+    old_navfn_behavior: bool  # use navfn's costs in place of the next three
+    lethal_cost: int          # cells with at least this cost are not crossed
     neutral_cost: float
     cost_factor: float
     orientation_mode: int
@@ -31,10 +31,10 @@ class GlobalPlannerSettings:
 
 def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, tolerance: float | None = None,
          *, settings: GlobalPlannerSettings) -> np.ndarray | None:
-    """Path (N, 3) from `start` to `goal`, poses in the costmap's frame; None where there is none.
+    """Path (N, 3) from `start` to `goal`, poses in the costmap's frame; None if there is none.
 
-    As navfn's `plan`, but yaws are those of `orientation_mode`. `old_navfn_behavior` takes navfn's
-    costs; its off-by-half-a-cell start is not repeated.
+    As navfn's `plan`, but with yaws by `orientation_mode`. `old_navfn_behavior` uses navfn's
+    costs; its start, which is off by half a cell, is not reproduced.
     """
     neutral, factor = ((50.0, 0.8) if settings.old_navfn_behavior
                        else (settings.neutral_cost, settings.cost_factor))

@@ -1,7 +1,7 @@
-"""Shortest drives of a car between two poses on free ground: arcs of one radius and straights.
+"""Shortest curves of a car between two poses without obstacles: arcs of one radius and straights.
 
 J. Reeds and L. Shepp, "Optimal paths for a car that goes both forwards and backwards" (1990),
-sections 8.1 to 8.11; L. Dubins (1957) for cars that only go forwards. Lengths here are in turning
+sections 8.1 to 8.11; L. Dubins (1957) for cars that only drive forwards. Lengths are in turning
 radii; a word is up to five pieces (signed length, curvature of -1, 0 or 1), left turns positive.
 """
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from nav_algorithms.compiled import compiled
 
-WORDS, PIECES = 64, 5  # room for all the words of one pair of poses, and pieces of one word
+WORDS, PIECES = 64, 5  # the most words for one pair of poses, and the most pieces of a word
 HALF = np.pi / 2
 
 
@@ -35,7 +35,7 @@ def _tau_omega(u, v, xi, eta, phi):
 
 @compiled("i8(f8[:,:,::1], i8, i8, b1, b1, b1, f8, f8, f8, f8, f8, f8, f8, f8, f8, f8)")
 def _put(words, count, pieces, flip, mirror, backward, l0, l1, l2, l3, l4, c0, c1, c2, c3, c4):
-    """One more word, turned back from the symmetry under which it was found."""
+    """Add a word, undoing the symmetry under which it was found."""
     sign, side = -1.0 if flip else 1.0, -1.0 if mirror else 1.0
     lengths, curvatures = (l0, l1, l2, l3, l4), (c0, c1, c2, c3, c4)
     words[count] = 0.0
@@ -48,7 +48,7 @@ def _put(words, count, pieces, flip, mirror, backward, l0, l1, l2, l3, l4, c0, c
 
 @compiled("i8(f8[:,:,::1], i8, f8, f8, f8, b1, b1)")
 def _straight_in_the_middle(words, count, x, y, phi, flip, mirror):
-    """8.1, 8.2 and 8.11: arc, straight, arc; and with an arc of a quarter on both sides of it."""
+    """8.1, 8.2 and 8.11: arc, straight, arc; also with a quarter-circle arc on both sides of it."""
     xi, eta = x - np.sin(phi), y - 1.0 + np.cos(phi)
     t, u = np.arctan2(eta, xi), np.hypot(xi, eta)
     v = _wrap(phi - t)
@@ -97,7 +97,7 @@ def _four_arcs(words, count, x, y, phi, flip, mirror):
 
 @compiled("i8(f8[:,:,::1], i8, f8, f8, f8, b1, b1, b1)")
 def _three_arcs_or_a_quarter(words, count, x, y, phi, flip, mirror, backward):
-    """8.3, 8.4, 8.9 and 8.10; `backward` reads them from their end."""
+    """8.3, 8.4, 8.9 and 8.10; `backward` reverses the order of the pieces."""
     if backward:
         x, y = x * np.cos(phi) + y * np.sin(phi), x * np.sin(phi) - y * np.cos(phi)
     xi, eta = x - np.sin(phi), y - 1.0 + np.cos(phi)
@@ -127,9 +127,9 @@ def _three_arcs_or_a_quarter(words, count, x, y, phi, flip, mirror, backward):
 
 @compiled("i8(f8[:,:,::1], f8, f8, f8)")
 def reeds_shepp(words, x, y, phi):
-    """All words from the origin to (x, y, phi), x and y in radii, into (WORDS, PIECES, 2).
+    """Write all words from the origin to (x, y, phi), x and y in radii, into (WORDS, PIECES, 2).
 
-    Returns how many. Pieces (length, curvature): a length below 0 is driven backwards.
+    Returns how many. Pieces (length, curvature): negative lengths are driven backwards.
     """
     count = 0
     for flip in (False, True):
@@ -147,7 +147,7 @@ def reeds_shepp(words, x, y, phi):
 
 @compiled("i8(f8[:,:,::1], f8, f8, f8)")
 def dubins(words, x, y, phi):
-    """As `reeds_shepp`, of a car without a reverse gear: no length is below 0."""
+    """As `reeds_shepp`, for a car without reverse gear: no length is negative."""
     count = 0
     full = 2 * np.pi
     for mirror in (False, True):

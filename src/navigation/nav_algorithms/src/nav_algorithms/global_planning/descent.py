@@ -1,4 +1,4 @@
-"""From a potential to a path: downhill, across the cells or from one cell to the next."""
+"""From a potential to a path: down the gradient, or from cell to cell."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from nav_algorithms.compiled import compiled
 
-STEP = 0.5  # cells, as navfn goes
+STEP = 0.5  # cells, as in navfn
 
 
 @compiled("void(f8[:,::1], i8, i8, f8[::1])")
@@ -26,7 +26,7 @@ def _slope(potential, row, column, found):
                 before = potential[row - 1, column]
             if row + 1 < rows:
                 after = potential[row + 1, column]
-        # The upwind side only: it alone is downhill for sure, next to a wall and in a valley.
+        # Only the upwind side: it always leads downhill, even next to a wall and in a valley.
         side = before if before <= after else after
         down = max(here - side, 0.0)
         found[axis] = -down if before <= after else down
@@ -38,7 +38,7 @@ def _slope(potential, row, column, found):
 
 @compiled("b1(f8[:,::1], f8, f8, f8[::1])")
 def _smooth_slope(potential, column, row, found):
-    """The slope between the centres of four cells; false where one of them was not reached."""
+    """The slope interpolated between the centres of four cells; false if one was not reached."""
     rows, columns = potential.shape
     c, r = int(np.floor(column)), int(np.floor(row))
     if c < 0 or r < 0 or c + 1 >= columns or r + 1 >= rows:
@@ -63,7 +63,7 @@ def _smooth_slope(potential, column, row, found):
 
 @compiled("UniTuple(i8, 2)(f8[:,::1], i8, i8)")
 def _lowest_around(potential, row, column):
-    """The cheapest of a cell and its eight neighbours; no step between two corners of obstacles."""
+    """The lowest of a cell and its eight neighbours; no diagonal step past a corner not reached."""
     rows, columns = potential.shape
     best_row, best_column, best = row, column, potential[row, column]
     for dr in range(-1, 2):
@@ -80,10 +80,10 @@ def _lowest_around(potential, row, column):
 
 @compiled("f8[:,::1](f8[:,::1], f8, f8, b1)")
 def descend(potential, column, row, across):
-    """Points (N, 2), cells (column, row) with centres at whole numbers, from a start to the source.
+    """Points (N, 2), cells (column, row) with centres at integers, from a start to the source.
 
-    Half a cell a step along the slope between the cells (`across`), from centre to centre where
-    there is no smooth slope or `across` is false. Empty where the potential leads nowhere.
+    Steps of half a cell along the interpolated slope (`across`); from centre to centre where there
+    is no smooth slope or `across` is false. Empty if the potential leads nowhere.
     """
     rows, columns = potential.shape
     room = 4 * rows * columns + 4

@@ -1,7 +1,7 @@
-"""Pieces of a drive, tried on a costmap: arcs and straights, forwards and backwards, and turns.
+"""Pieces of a drive, tested on a costmap: arcs and straights, forwards and backwards, and turns.
 
-A piece is (kind, amount, curvature): DRIVE by `amount`, m, negative backwards, at a `curvature`,
-1/m; or TURN on the spot by `amount`, rad.
+A piece is (kind, amount, curvature): DRIVE by `amount`, m, negative backwards, with a
+`curvature`, 1/m; or TURN on the spot by `amount`, rad.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from nav_algorithms.costmap.costs import UNKNOWN
 from nav_algorithms.costmap.footprint import ON_UNKNOWN, cost_at
 
 DRIVE, TURN = 0, 1
-TURN_STEP = 0.09  # rad between two looks; a third of a metre out this is less than a cell
-# The numbers of `terms`, how much things cost, in metres of free road driven forwards.
+TURN_STEP = 0.09  # rad between two checks; 0.33 m from the centre this is less than a cell
+# Indices of `terms`, the cost factors, in metres of free road driven forwards.
 COSTLY, REVERSE, CUSP, CURVING, SWERVING, TURNING = range(6)
 
 
 @compiled("void(f8[::1], i8, f8, f8, f8[::1])")
 def move(pose, kind, amount, curvature, found):
-    """Where a piece ends that begins at `pose`."""
+    """The end `found` of a piece that begins at `pose`."""
     x, y, yaw = pose[0], pose[1], pose[2]
     if kind == TURN:
         found[0], found[1], found[2] = x, y, yaw + amount
@@ -36,7 +36,7 @@ def move(pose, kind, amount, curvature, found):
 
 @compiled("i8(i8, f8, f8)")
 def steps_of(kind, amount, step):
-    """Steps of a piece, none longer than `step`, m, or TURN_STEP."""
+    """The number of steps of a piece, none longer than `step`, m, or TURN_STEP."""
     return max(int(np.ceil(abs(amount) / (TURN_STEP if kind == TURN else step) - 1e-9)), 1)
 
 
@@ -44,7 +44,7 @@ def steps_of(kind, amount, step):
           "f8[::1])")
 def cost_of(cells, resolution, origin_x, origin_y, free_radii, circumscribed, footprint,
             allow_unknown, terms, pose, kind, amount, curvature, found):
-    """What a piece costs that begins at `pose` and ends at `found`, (3,); inf where it touches."""
+    """The cost of a piece from `pose`; `found` (3,) becomes its end; inf if it collides."""
     steps = steps_of(kind, amount, resolution)
     clear = circumscribed / resolution + 1.5
     dear = 0.0
@@ -71,7 +71,7 @@ def cost_of(cells, resolution, origin_x, origin_y, free_radii, circumscribed, fo
 
 @compiled("f8(f8[::1], i8, f8, f8, i8, f8, f8)")
 def change_cost(terms, kind, amount, curvature, next_kind, next_amount, next_curvature):
-    """What it costs to go over from one piece to the next: a cusp, or the wheel turned."""
+    """The cost between two pieces: of a cusp, or of a change of curvature."""
     if kind == TURN or next_kind == TURN or amount == 0.0:
         return 0.0
     cost = terms[SWERVING] * abs(next_curvature - curvature)

@@ -1,4 +1,4 @@
-"""A binary heap in two arrays: least key first; equal keys by item, so that runs repeat."""
+"""A binary heap in two arrays: lowest key first; equal keys by item, so that runs repeat."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from nav_algorithms.compiled import compiled
 
 @compiled("i8(f8[::1], i8[::1], i8, f8, i8)")
 def push(keys, items, count, key, item):
-    """Puts one in; `count` are in now and there is room. Returns how many are in afterwards."""
+    """Add an item to `count` of them, if there is room. Returns the new count."""
     at = count
     while at > 0:
         above = (at - 1) >> 1
@@ -21,7 +21,7 @@ def push(keys, items, count, key, item):
 
 @compiled("i8(f8[::1], i8[::1], i8)")
 def pop(keys, items, count):
-    """Takes out the first, keys[0] and items[0]: read them before. Returns how many stay."""
+    """Remove the first, keys[0] and items[0], which must be read before. Returns the new count."""
     count -= 1
     key, item = keys[count], items[count]
     at = 0

@@ -1,8 +1,8 @@
-"""Paths that a car can drive: hybrid A* over poses, forwards and backwards, with its outline.
+"""Paths that a car can drive: hybrid A* over poses, forwards and backwards, with its footprint.
 
 D. Dolgov, S. Thrun, M. Montemerlo, J. Diebel, "Path planning for autonomous vehicles in unknown
-semi-structured environments" (2010): cells of (x, y, yaw) that each keep the exact pose by which
-they were reached best, and curves that are tried from there to the goal.
+semi-structured environments" (2010): cells of (x, y, yaw) that each keep the exact pose of the
+cheapest way there, and curves that are tried from there to the goal.
 """
 
 from __future__ import annotations
@@ -18,42 +18,42 @@ from nav_algorithms.global_planning.drives import move, steps_of
 from nav_algorithms.global_planning.potential import spread_everywhere
 from nav_algorithms.global_planning.search import search
 
-TIGHT = 20.0  # as many cells does one count, in the estimate, that is within the inscribed radius
-LARGE = 1_000_000  # cells; on such a map a way is looked for in the surroundings first
-AROUND = 20.0      # m of surroundings, about start and goal
+TIGHT = 20.0  # cost, in free cells, of a cell within the inscribed radius, in the heuristic
+LARGE = 1_000_000  # cells; on a larger map, a path near start and goal is searched for first
+AROUND = 20.0      # m around start and goal
 
 
 @dataclass(frozen=True)
 class HybridAstarSettings:
-    """What the vehicle can and what it should rather not do. Costs are in metres of free road."""
+    """What the vehicle can do and should avoid. Costs are in metres of free road."""
 
     allow_unknown: bool
-    default_tolerance: float       # accepted: the goal is reached exactly or not at all
+    default_tolerance: float       # accepted, no effect: the goal is reached exactly or not
     minimum_turning_radius: float  # m
     allow_reverse: bool
     turn_in_place: bool            # differential drives: turns on the spot, and no curves
     state_resolution: float        # m, of the cells of poses
     yaw_bins: int                  # on the full circle
     primitive_length: float        # m, of one piece
-    cost_penalty: float            # for each metre, times the cell's cost / 252
-    reverse_penalty: float         # for each metre, as a factor
-    cusp_penalty: float            # for each change between forwards and backwards
-    curvature_penalty: float       # for each metre and each 1/m of curvature
-    swerve_penalty: float          # for each 1/m by which the curvature changes
-    turn_penalty: float            # for each radian on the spot
-    max_expansions: int            # about a second on one core of 2020
-    improve_expansions: int        # after the first way was found
+    cost_penalty: float            # per metre, times the cell's cost / 252
+    reverse_penalty: float         # factor per metre
+    cusp_penalty: float            # per change between forwards and backwards
+    curvature_penalty: float       # per metre and per 1/m of curvature
+    swerve_penalty: float          # per 1/m of change of curvature
+    turn_penalty: float            # per radian on the spot
+    max_expansions: int            # about a second on a core of 2020
+    improve_expansions: int        # after the first path was found
 
 
 def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: np.ndarray,
          settings: HybridAstarSettings) -> np.ndarray | None:
-    """Path (N, 3) from `start` to `goal`, poses in the costmap's frame; None where there is none.
+    """Path (N, 3) from `start` to `goal`, poses in the costmap's frame; None if there is none.
 
-    Poses are a cell or less apart; the vehicle drives backwards where the next pose lies behind.
-    `footprint` (K, 2), m, is free at each of them; where it seems to touch something at the start,
-    as much smaller as it must be to fit there. The same input gives the same path: what bounds the
-    time is a number of steps, not a clock. When they are used up, the best path so far counts.
-    On a large costmap a path near start and goal counts, though a shorter one may lead far away.
+    Poses are at most a cell apart; the vehicle drives backwards where the next pose is behind it.
+    `footprint` (K, 2), m, is free at each of them; if it seems to touch something at the start, it
+    is shrunk until it fits there. The same input gives the same path: the time is limited by a
+    number of steps, not by a clock. After these, the best path so far is returned.
+    On a large costmap, a path near start and goal is preferred to a shorter one farther away.
     """
     start, goal = np.array(start, float), np.array(goal, float)
     footprint = np.ascontiguousarray(footprint, float)
@@ -65,7 +65,7 @@ def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: np.nd
 
 
 def _parts(costmap: Costmap, start: np.ndarray, goal: np.ndarray) -> Iterator[Costmap]:
-    """The surroundings of a large costmap, then all of it: its far ends cost seconds and GB."""
+    """The surroundings in a large costmap, then all of it, which may cost seconds and GB."""
     if costmap.cells.size > LARGE:
         ends = costmap.cells_of(np.stack((start[:2], goal[:2])))
         if costmap.contains(ends).all():
@@ -80,7 +80,7 @@ def _parts(costmap: Costmap, start: np.ndarray, goal: np.ndarray) -> Iterator[Co
 
 def _plan_on(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: np.ndarray,
              settings: HybridAstarSettings) -> np.ndarray | None:
-    """As `plan`, on all of the costmap."""
+    """As `plan`, on the whole costmap."""
     footprint = footprints.shrunk_to_fit(_known(costmap, settings), footprint, start)
     if footprint is None or not costmap.contains(costmap.cells_of(goal[:2])):
         return None
@@ -101,7 +101,7 @@ def _plan_on(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: n
 
 
 def _known(costmap: Costmap, settings: HybridAstarSettings) -> Costmap:
-    """The costmap with the unknown free, where it may be crossed."""
+    """The costmap with unknown cells free, if they may be crossed."""
     if not settings.allow_unknown:
         return costmap
     cells = np.where(costmap.cells == UNKNOWN, np.uint8(0), costmap.cells)
@@ -109,7 +109,7 @@ def _known(costmap: Costmap, settings: HybridAstarSettings) -> Costmap:
 
 
 def _estimate(costmap: Costmap, goal: np.ndarray, settings: HybridAstarSettings) -> np.ndarray:
-    """What is left to the goal from each cell for a point that turns as it likes, m of road."""
+    """The cost from each cell to the goal, m of road, for a point that turns freely."""
     cells = costmap.cells.astype(float)
     crossing = 1.0 + settings.cost_penalty * cells / 252.0
     crossing[costmap.cells == INSCRIBED] = TIGHT
@@ -120,7 +120,7 @@ def _estimate(costmap: Costmap, goal: np.ndarray, settings: HybridAstarSettings)
 
 
 def _driven(start: np.ndarray, goal: np.ndarray, pieces: np.ndarray, step: float) -> np.ndarray:
-    """The poses (N, 3) of pieces (M, 3) driven one after the other, ending at the goal exactly."""
+    """The poses (N, 3) of pieces (M, 3) driven one after another, ending exactly at the goal."""
     found = [start]
     for kind, amount, curvature in pieces:
         begin = found[-1]

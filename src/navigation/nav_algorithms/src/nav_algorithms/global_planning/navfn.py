@@ -1,4 +1,4 @@
-"""navfn's planner: the cheapest way of a round robot's centre over the cells."""
+"""navfn's planner: the cheapest path of a round robot's centre over the cells."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from nav_algorithms.global_planning.descent import descend
 from nav_algorithms.global_planning.orientation import FORWARD, orient
 from nav_algorithms.global_planning.potential import crossing_costs, spread, way_out
 
-NEUTRAL, FACTOR = 50.0, 0.8  # cost of a free cell, and of each unit of a costmap's cost on top
-UNKNOWN_COST = 253.0         # where unknown cells may be crossed
+NEUTRAL, FACTOR = 50.0, 0.8  # cost of a free cell, and cost added per unit of the costmap's
+UNKNOWN_COST = 253.0         # if unknown cells may be crossed
 
 
 @dataclass(frozen=True)
 class NavfnSettings:
-    """Names of navfn/NavfnROS. The window and the picture belong to its node."""
+    """Parameters of navfn/NavfnROS, except those of its window and its topics."""
 
     allow_unknown: bool
     default_tolerance: float  # m, how far from the goal a path may end, along x and y
@@ -25,12 +25,12 @@ class NavfnSettings:
 
 def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, tolerance: float | None = None,
          *, settings: NavfnSettings) -> np.ndarray | None:
-    """Path (N, 3) from `start` to `goal`, poses in the costmap's frame; None where there is none.
+    """Path (N, 3) from `start` to `goal`, poses in the costmap's frame; None if there is none.
 
-    Points are half a cell apart or a little more; yaws are those of travel, the first is the
-    start's and the last the goal's. A start too near to an obstacle is left by the shortest way,
-    which is dear. With a `tolerance`, m, a goal that cannot be reached becomes the nearest point
-    of the square around it that can.
+    Points are half a cell apart or a little more; yaws are along the path, except at the start and
+    the goal, whose own are kept. A start too near to an obstacle is left by the shortest way, at a
+    high cost. With a `tolerance`, m, a goal that cannot be reached is replaced by the nearest point
+    that can, in the square around it.
     """
     cost = crossing_costs(costmap.cells, NEUTRAL, FACTOR, INSCRIBED,
                           UNKNOWN_COST if settings.allow_unknown else np.inf)
@@ -41,7 +41,7 @@ def plan(costmap: Costmap, start: np.ndarray, goal: np.ndarray, tolerance: float
 def plan_over(costmap: Costmap, cost: np.ndarray, start: np.ndarray, goal: np.ndarray,
               tolerance: float, quadratic: bool = True, heuristic: float = 0.0,
               across: bool = True) -> np.ndarray | None:
-    """As `plan`, for any cost of crossing (rows, columns); it is changed where a start is freed.
+    """As `plan`, with any costs (rows, columns) of crossing, which change where a start is freed.
 
     `quadratic` and `heuristic` are those of `potential.spread`, `across` that of `descent.descend`.
     """
@@ -70,7 +70,7 @@ def plan_over(costmap: Costmap, cost: np.ndarray, start: np.ndarray, goal: np.nd
 
 def _nearest_reached(costmap: Costmap, potential: np.ndarray, goal: np.ndarray, tolerance: float
                      ) -> np.ndarray | None:
-    """Centre (x, y), m, of the reached cell nearest to the goal, in the square about that."""
+    """Centre (x, y), m, of the reached cell nearest to the goal, within the square around it."""
     if tolerance <= 0.0:
         return None
     cells = np.argwhere(np.isfinite(potential))

@@ -1,4 +1,4 @@
-"""Which way a robot looks along a path, GlobalPlanner's orientation_mode."""
+"""The yaw of a robot along a path: GlobalPlanner's orientation_mode."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ def directions(points: np.ndarray, window: int) -> np.ndarray:
 
 
 def _interpolated(begin: float, end: float, count: int) -> np.ndarray:
-    """`count` angles that turn evenly from one to the other, the short way round."""
+    """`count` angles evenly from one to the other, the short way round."""
     return wrap_angle(begin + np.linspace(0.0, 1.0, count) * wrap_angle(end - begin))
 
 
 def orient(path: np.ndarray, mode: int, window: int = 1) -> np.ndarray:
-    """The path (N, 3) with the yaws that `mode` asks for; its first and last pose stay.
+    """The path (N, 3) with yaws by `mode`; its first and last pose keep theirs.
 
     NONE: yaw 0 between them. FORWARD_THEN_INTERPOLATE: along the path, and over its last part,
-    where that turns the same way round, evenly to the goal's yaw. Raises ValueError for others.
+    if that turns the same way round, evenly to the goal's yaw. Raises ValueError for other modes.
     """
     if mode not in range(7):
         raise ValueError(f"orientation_mode is 0 to 6, not {mode}")

@@ -1,8 +1,8 @@
-"""What it costs to come to each cell: a front that spreads over a grid from its sources.
+"""The cost of reaching each cell: a wavefront that spreads over a grid from its sources.
 
-The eikonal equation |grad T| = cost, by J. Sethian's fast marching (1996): each cell gets its value
+The eikonal equation |grad T| = cost, by J. Sethian's fast marching (1996): each cell's value comes
 from the cheaper neighbour in x and the cheaper one in y, so that T grows evenly in all directions
-and not only along the grid. navfn's "quadratic interpolation" is an approximation of the same.
+and not only along the grid. navfn's "quadratic interpolation" is an approximation of this.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from nav_algorithms.global_planning.heap import pop, push
 
 @compiled("f8(f8[:,::1], i8, i8, f8, b1)")
 def _value(found, row, column, cost, quadratic):
-    """What a cell costs that is `cost` across, from its four neighbours."""
+    """The potential of a cell with crossing cost `cost`, from its four neighbours."""
     rows, columns = found.shape
     below = found[row - 1, column] if row > 0 else np.inf
     above = found[row + 1, column] if row + 1 < rows else np.inf
@@ -31,14 +31,14 @@ def _value(found, row, column, cost, quadratic):
 
 @compiled("f8[:,::1](f8[:,::1], i8[:,::1], f8[::1], i8, i8, b1, f8, f8)")
 def spread(cost, sources, seeds, target_row, target_column, quadratic, heuristic, margin):
-    """The potential (rows, columns): inf where the front did not come.
+    """The potential (rows, columns): inf where the wavefront did not get to.
 
-    `cost` is what it costs to cross each cell, above 0, inf where nothing goes. `sources` are
-    (row, column), (S, 2), each with the potential of its seed, (S,), whatever it costs. The front
-    stops once it is `margin` past the target; a target outside the grid lets it go everywhere.
-    `quadratic` false: each cell costs its cheapest neighbour and itself, as on a street grid.
-    `heuristic` above 0 is A*: the least cost of a cell, for each step left to the target along the
-    grid.
+    `cost` is the cost of crossing each cell, above 0, inf if it cannot be crossed. `sources` are
+    (row, column), (S, 2), each with a start potential from `seeds` (S,), whatever its cost. The
+    wavefront stops `margin` beyond the target; if the target is outside the grid, it never stops.
+    `quadratic` false: a cell's value is its cheapest neighbour's plus its cost, as on a grid.
+    `heuristic` above 0 means A*: the lowest cost of a cell, for each step left to the target along
+    the grid.
     """
     rows, columns = cost.shape
     found = np.full((rows, columns), np.inf)
@@ -77,7 +77,7 @@ def spread(cost, sources, seeds, target_row, target_column, quadratic, heuristic
 
 
 def spread_everywhere(cost: np.ndarray, sources: np.ndarray, seeds: np.ndarray) -> np.ndarray:
-    """As `spread`, evenly in all directions to all that can be reached."""
+    """As `spread`, with quadratic interpolation, to all cells that can be reached."""
     return spread(cost, sources, seeds, -1, -1, True, 0.0, 0.0)
 
 
@@ -85,8 +85,8 @@ def crossing_costs(cells: np.ndarray, neutral: float, factor: float, lethal: int
                    ) -> np.ndarray:
     """Cost of crossing each cell, float64: neutral + factor * cell, below `lethal`; else inf.
 
-    `cells` are a costmap's; a cell never seen costs `unknown` (inf: nothing goes there). The outer
-    ring is shut, as upstream's planners do it, so that no path touches the edge of the map.
+    `cells` are a costmap's; unknown cells cost `unknown` (inf: not crossed). The border cells are
+    blocked, as in upstream's planners, so that no path touches the edge of the map.
     """
     table = np.minimum(neutral + factor * np.arange(256), float(lethal - 1))
     table[min(lethal, INSCRIBED):] = np.inf
@@ -101,8 +101,8 @@ def crossing_costs(cells: np.ndarray, neutral: float, factor: float, lethal: int
 def way_out(cells, row, column):
     """Cells (row, column), (N, 2), from one too near to an obstacle to the nearest that is not.
 
-    Over cells that are below LETHAL or never seen; empty where there is none. A robot that was put
-    beside a wall can begin its path so.
+    Over cells that are below LETHAL or unknown; empty if there is no way. Lets the path of a robot
+    that was put next to a wall begin there.
     """
     rows, columns = cells.shape
     came = np.full(rows * columns, -1, np.int64)

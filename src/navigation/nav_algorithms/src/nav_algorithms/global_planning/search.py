@@ -1,4 +1,4 @@
-"""The search itself of hybrid A*: from which pose to go on next, and which pieces to try there."""
+"""The search of hybrid A*: which pose to expand next, and which pieces to try from it."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from nav_algorithms.global_planning.drives import DRIVE, TURN, change_cost, cost
 from nav_algorithms.global_planning.heap import pop, push
 from nav_algorithms.global_planning.shots import free_way, shoot
 
-BENDS = 5           # curvatures from one lock of the wheel to the other
+BENDS = 5           # curvatures from full lock to full lock
 SPOT_TURN = 0.2618  # rad, 15 degrees
-NEAR = 6.0          # turning radii within which the estimate asks for the curve on free ground
+NEAR = 6.0          # turning radii within which the heuristic uses the free curve's length
 
 
 @compiled("i8(f8, b1, b1, f8, f8[:,::1])")
 def _primitives(radius, reverse, turns, length, found):
-    """Fills pieces (kind, amount, curvature) (12, 3) to try from each pose; returns how many."""
+    """Fills pieces (kind, amount, curvature) (12, 3) to try from a pose; returns how many."""
     count = 0
     for n in range(BENDS):
         bend = (n - (BENDS - 1) // 2) / ((BENDS - 1) // 2) / radius
@@ -37,7 +37,7 @@ def _primitives(radius, reverse, turns, length, found):
 
 @compiled("f8[:,::1](f8[:,::1], i8[::1], i8, f8[:,::1])")
 def _pieces_to(nodes, parents, node, shot):
-    """The pieces (M, 3) from the start to a node, and those of the shot behind it."""
+    """The pieces (M, 3) from the start to a node, and those of the `shot` after it."""
     count, at = 0, node
     while parents[at] >= 0:
         count += 1
@@ -56,7 +56,7 @@ def _pieces_to(nodes, parents, node, shot):
 
 @compiled("i8(f8[::1], f8, f8, f8, i8, i8, i8)")
 def _state(pose, origin_x, origin_y, state_resolution, rows, columns, yaw_bins):
-    """The cell of poses that a pose is in."""
+    """The index of the cell of (x, y, yaw) that contains a pose."""
     row = min(int((pose[1] - origin_y) / state_resolution), rows - 1)
     column = min(int((pose[0] - origin_x) / state_resolution), columns - 1)
     turn = (pose[2] / (2 * np.pi)) % 1.0
@@ -68,10 +68,10 @@ def _state(pose, origin_x, origin_y, state_resolution, rows, columns, yaw_bins):
 def search(cells, resolution, origin_x, origin_y, free_radii, circumscribed, footprint,
            allow_unknown, terms, estimate, start, goal, radius, reverse, turns, state_resolution,
            yaw_bins, length, max_expansions, improve_expansions):
-    """Pieces (M, 3) from start to goal, see `drives`; empty where no way was found.
+    """Pieces (M, 3) from start to goal, see `drives`; empty if no path was found.
 
-    `estimate` (rows, columns) is the cost that is left for a point; `state_resolution`, m, and
-    `yaw_bins` make the cells of poses. A node is x, y, yaw, cost, and the piece that led to it.
+    `estimate` (rows, columns) is the remaining cost for a point; `state_resolution`, m, and
+    `yaw_bins` define the cells of poses. A node is x, y, yaw, cost, and the piece that led to it.
     """
     rows = int(np.ceil(cells.shape[0] * resolution / state_resolution))
     columns = int(np.ceil(cells.shape[1] * resolution / state_resolution))
@@ -80,7 +80,7 @@ def search(cells, resolution, origin_x, origin_y, free_radii, circumscribed, foo
     room = max_expansions * branching + 2
     nodes, parents = np.empty((room, 7)), np.empty(room, np.int64)
     keys, items = np.empty(room), np.empty(room, np.int64)
-    best_at = np.zeros(rows * columns * yaw_bins, np.int64)  # node and one; 0: none yet
+    best_at = np.zeros(rows * columns * yaw_bins, np.int64)  # node + 1; 0: none yet
     shot, best_shot = np.zeros((PIECES, 3)), np.zeros((PIECES, 3))
     nodes[0] = 0.0
     nodes[0, :3] = start

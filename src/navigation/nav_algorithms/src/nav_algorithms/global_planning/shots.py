@@ -1,4 +1,4 @@
-"""The last stretch at once: a curve that is known to end at the goal, if nothing is in its way."""
+"""Shots to the goal: a curve that ends exactly there, if nothing is in the way."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from nav_algorithms.global_planning.drives import (
     cost_of,
 )
 
-TRIED = 4  # curves that are driven on paper, the cheapest first
+TRIED = 4  # curves that are checked on the costmap, the cheapest first
 
 
 @compiled("i8(f8[:,:,::1], f8[::1], f8[::1], f8, b1, b1)")
 def _curves(words, pose, goal, radius, reverse, turns):
-    """Ways (WORDS, PIECES, 3) of pieces (kind, amount, curvature) from pose to goal; how many."""
+    """Fill `words` (WORDS, PIECES, 3) with ways from pose to goal; returns how many."""
     dx, dy, dyaw = goal[0] - pose[0], goal[1] - pose[1], goal[2] - pose[2]
     words[:] = 0.0
     if turns:
@@ -47,7 +47,7 @@ def _curves(words, pose, goal, radius, reverse, turns):
 
 @compiled("f8(f8[:,::1], f8[::1], i8, f8, f8)")
 def _free_cost(word, terms, kind, amount, curvature):
-    """What a way costs on free ground, after a piece (kind, amount, curvature)."""
+    """The cost of a way on free ground, after a piece (kind, amount, curvature)."""
     cost = 0.0
     for k in range(len(word)):
         next_kind, next_amount, next_curvature = int(word[k, 0]), word[k, 1], word[k, 2]
@@ -67,7 +67,7 @@ def _free_cost(word, terms, kind, amount, curvature):
 
 @compiled("f8(f8[::1], f8[::1], f8, b1, b1, f8[::1])")
 def free_way(pose, goal, radius, reverse, turns, terms):
-    """The least cost from pose to goal on free ground, cusps and wheel not counted."""
+    """The lowest cost from pose to goal on free ground, without cusps and changes of curvature."""
     words = np.empty((WORDS, PIECES, 3))
     count = _curves(words, pose, goal, radius, reverse, turns)
     best = np.inf
@@ -86,10 +86,10 @@ def free_way(pose, goal, radius, reverse, turns, terms):
 def shoot(cells, resolution, origin_x, origin_y, free_radii, circumscribed, footprint,
           allow_unknown, terms, pose, goal, radius, reverse, turns, kind, amount, curvature, limit,
           found):
-    """Cost of the first of the cheapest ways to the goal that is free and costs below `limit`.
+    """Cost of the cheapest free way to the goal below `limit`, of the TRIED most promising ones.
 
     `found` (PIECES, 3) gets its pieces; (kind, amount, curvature) is the piece that ends at `pose`.
-    inf: there is none.
+    inf if there is none.
     """
     words = np.empty((WORDS, PIECES, 3))
     count = _curves(words, pose, goal, radius, reverse, turns)

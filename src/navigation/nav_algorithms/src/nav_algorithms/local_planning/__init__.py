@@ -1,1 +1,1 @@
-"""Velocities that follow a path and touch nothing, a few times a second."""
+"""Velocities that follow a path and avoid obstacles, a few times per second."""

@@ -1,7 +1,7 @@
-"""DWAPlannerROS: of the velocities within reach, the one whose near future costs the least.
+"""DWAPlannerROS: of the reachable velocities, the one whose trajectory costs the least.
 
 D. Fox, W. Burgard, S. Thrun, "The dynamic window approach to collision avoidance" (1997), with the
-costs, names of dwa_local_planner.
+costs and parameter names of dwa_local_planner.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ EPSILON = 1e-4
 
 @dataclass(frozen=True)
 class DwaSettings:
-    """Names of dwa_local_planner/DWAPlannerROS; m, s, rad.
+    """Parameters of dwa_local_planner/DWAPlannerROS; m, s, rad.
 
-    A velocity limit below 0 is none. `acc_lim_trans` and `prune_plan` have no effect: each axis has
-    its own limit, and what is behind the robot is always left out. A turn on the spot is scored
-    where it looks best, not where `sim_time` ends it: upstream's robots turn past their path.
+    A negative velocity limit means none. `acc_lim_trans` and `prune_plan` have no effect: each axis
+    has its own limit, and the path behind the robot is always left out. A turn on the spot is
+    scored where it is best, not at the end of `sim_time`: upstream's robots turn past their path.
     """
 
     acc_lim_x: float
@@ -71,7 +71,7 @@ class DwaSettings:
     trans_stopped_vel: float
     theta_stopped_vel: float
     use_dwa: bool
-    controller_frequency: float  # move_base's: one command a period
+    controller_frequency: float  # move_base's: one command per period
 
 
 class DwaPlanner(LocalPlanner):
@@ -95,7 +95,7 @@ class DwaPlanner(LocalPlanner):
 
     def _best(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
               velocity: np.ndarray, near: np.ndarray, goal: np.ndarray) -> Command | None:
-        """The cheapest of the samples that touch nothing."""
+        """The cheapest of the samples without a collision."""
         s = self.settings
         samples = self.samples(velocity, float(np.hypot(*(goal[:2] - pose[:2]))))
         samples = samples[self.oscillation.allowed(samples)]
@@ -126,10 +126,10 @@ class DwaPlanner(LocalPlanner):
         return np.array([s.acc_lim_x, s.acc_lim_y, s.acc_lim_theta])
 
     def samples(self, velocity: np.ndarray, to_goal: float) -> np.ndarray:
-        """Velocities (S, 3) to try, from a robot that has `velocity`, `to_goal`, m, from its goal.
+        """Velocities (S, 3) to try, for a robot with `velocity`, `to_goal`, m, from its goal.
 
-        With `use_dwa` those of the next period; else those of all of `sim_time`, of which none
-        goes past the goal. None is slower than `min_vel_trans` and `min_vel_theta` both.
+        With `use_dwa` those of the next period; else those within `sim_time`, none of which passes
+        the goal. None is slower than both `min_vel_trans` and `min_vel_theta`.
         """
         s = self.settings
         high = np.array([s.max_vel_x, s.max_vel_y, s.max_vel_theta])
@@ -147,7 +147,7 @@ class DwaPlanner(LocalPlanner):
         return np.ascontiguousarray(samples[keep])
 
     def _grids(self, costmap: Costmap, near: np.ndarray, pose: np.ndarray) -> np.ndarray:
-        """Distances (3, rows, columns) to the path, to its end, and to the front of its end."""
+        """Distances (3, rows, columns) to the path, to its end, and to a point ahead of its end."""
         end = near[-1, :2]
         bearing = np.arctan2(*(end - pose[:2])[::-1])
         front = end + self.settings.forward_point_distance * np.array([np.cos(bearing),
@@ -157,10 +157,10 @@ class DwaPlanner(LocalPlanner):
                          distances_to(costmap, front[None], np.vstack((near[:, :2], front)))])
 
     def _weights(self, costmap: Costmap, pose: np.ndarray, near: np.ndarray) -> np.ndarray:
-        """What a cell's way counts from the path, the goal, the goal's front, and in alignment.
+        """Weights of the distances to the path, the goal and the goal's front, and of ALIGNMENT.
 
-        Close to the end of the path the robot need not look along it any more; and the less it
-        shall look to the goal the nearer that is, or it would rock to and fro before it.
+        Close to the end of the path the robot need not face along it any more; and the nearer the
+        goal, the less it should face it, or it would oscillate in front of it.
         """
         path = self.settings.path_distance_bias * costmap.resolution
         goal = self.settings.goal_distance_bias * costmap.resolution

@@ -1,4 +1,4 @@
-"""The path that a local planner follows: what is left of it, seen from where the robot is."""
+"""The path that a local planner follows: the rest of it from the robot on."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from nav_algorithms.costmap.costs import UNKNOWN, Costmap
 from nav_algorithms.poses import compose
 
-AHEAD = 1.0  # m along the path in which the robot's place on it is looked for
+AHEAD = 1.0  # m along the path that are searched for the robot's position
 STANDSTILL = np.zeros(3)
 
 
@@ -15,7 +15,7 @@ class Following:
     """A path (N, 3) in a fixed frame and how far along it the robot is."""
 
     def __init__(self, path: np.ndarray) -> None:
-        """Raises ValueError for what is no path."""
+        """Raises ValueError for an invalid path."""
         path = np.array(path, float)
         if path.ndim != 2 or path.shape[1:] != (3,) or not len(path) or not np.isfinite(path).all():
             raise ValueError(f"a path is (N, 3), finite and not empty, not {path.shape}")
@@ -24,10 +24,10 @@ class Following:
         self.at = 0
 
     def left(self, pose: np.ndarray, path_frame: np.ndarray = STANDSTILL) -> np.ndarray:
-        """The path (M, 3) from beside the robot to the goal, in the costmap's frame.
+        """The path (M, 3) from next to the robot to the goal, in the costmap's frame.
 
-        `path_frame` is the pose of the path's frame in the costmap's. The robot's place never goes
-        back, and not to another stretch of the path that happens to come near.
+        `path_frame` is the pose of the path's frame in the costmap's. The place on the path never
+        goes back, nor to another part of the path that happens to come near.
         """
         path = compose(np.asarray(path_frame, float), self.path[self.at:])
         near = self.lengths[self.at:] <= self.lengths[self.at] + AHEAD
@@ -40,7 +40,7 @@ class Following:
 
 
 def within(costmap: Costmap, path: np.ndarray) -> np.ndarray:
-    """The first stretch of the path (M, 3) on known cells of the costmap; may be empty."""
+    """The first part of the path (M, 3) on known cells of the costmap; may be empty."""
     cells = costmap.cells_of(path[:, :2])
     inside = costmap.contains(cells)
     inside[inside] = costmap.cells[tuple(cells[inside].T)] != UNKNOWN

@@ -1,4 +1,4 @@
-"""Arcs that a car can drive now, and how much room it has."""
+"""Arcs that a car can drive now, and its distance from obstacles."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.global_planning.drives import DRIVE, move
 from nav_algorithms.poses import compose, relative, wrap_angle
 
-BENDS = 21  # curvatures that are tried where the wanted one is not free
+BENDS = 21  # curvatures that are tried if the wanted one is not free
 
 
 def arc_of(pose: np.ndarray, length: float, curvature: float, step: float) -> np.ndarray:
-    """Poses (M, 3) along an arc, no more than `step`, m, apart; a length below 0 goes backwards."""
+    """Poses (M, 3) along an arc, at most `step`, m, apart; a negative length goes backwards."""
     steps = max(int(np.ceil(abs(length) / step)), 1)
     poses = np.empty((steps + 1, 3))
     poses[0] = pose
@@ -24,10 +24,10 @@ def arc_of(pose: np.ndarray, length: float, curvature: float, step: float) -> np
 
 def free_arc(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray, length: float,
              wanted: float, limit: float, carrot: np.ndarray) -> tuple[float, np.ndarray] | None:
-    """(curvature, poses) of the wanted arc; where that is not free, of the one that is and ends
-    nearest to the carrot (3,). None: there is none.
+    """(curvature, poses) of the wanted arc; if that is not free, of the free one that ends nearest
+    to the carrot (3,). None if there is none.
 
-    `length`, m, below 0 backwards; `wanted` and `limit`, 1/m; poses in the costmap's frame.
+    `length`, m, negative backwards; `wanted` and `limit`, 1/m; poses in the costmap's frame.
     """
     arc = arc_of(pose, length, wanted, costmap.resolution)
     if (footprints.costs(costmap, footprint, arc) >= 0).all():
@@ -45,7 +45,7 @@ def free_arc(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray, length: 
 
 
 def space(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray) -> float:
-    """Distance of the outline's corners and sides to the nearest obstacle, about, m."""
+    """Approximate distance, m, of the footprint's corners and sides from the nearest obstacle."""
     if len(footprint) < 3:
         return np.inf
     outline = np.vstack((footprint, 0.5 * (footprint + np.roll(footprint, 1, axis=0))))

@@ -1,4 +1,4 @@
-"""The end of a path: stop beside the goal, turn on the spot to its yaw, and say when it is done."""
+"""The end of a path: stop at the goal, turn on the spot to its yaw, and report when it is done."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.local_planning.velocities import Command, slowed, turning
 from nav_algorithms.poses import wrap_angle
 
-TURN_STEP = 0.05  # rad, between two looks at what the turning footprint touches
+TURN_STEP = 0.05  # rad, between two collision checks of the turning footprint
 
 
 @dataclass(frozen=True)
 class Arrival:
-    """What counts as being there, and how the robot turns. SI units; one period a command."""
+    """The conditions of arrival, and how the robot turns. SI units; one command per period."""
 
     xy_goal_tolerance: float
     yaw_goal_tolerance: float
@@ -30,10 +30,10 @@ class Arrival:
 
 
 class StopAndTurn:
-    """Takes over once the robot is within reach of the goal; keeps it, when latched, until reset.
+    """Takes over once the robot is within reach of the goal; if latched, keeps it until reset.
 
-    As base_local_planner's LatchedStopRotateController, but looks only at the turn that is needed,
-    and turns the other way round where the short one is blocked.
+    As base_local_planner's LatchedStopRotateController, but only checks the turn that is needed,
+    and turns the other way round if the short one is blocked.
     """
 
     def __init__(self, arrival: Arrival) -> None:
@@ -41,17 +41,17 @@ class StopAndTurn:
         self.reset()
 
     def reset(self) -> None:
-        """A new path: nothing is latched."""
+        """For a new path: nothing is latched."""
         self.latched = self.turning = False
 
     def at_place(self, pose: np.ndarray, goal: np.ndarray) -> bool:
-        """Whether the place is right, or was while latching is on."""
+        """Whether the position is right, or was before, with latching."""
         near = np.hypot(*(goal[:2] - pose[:2])) <= self.arrival.xy_goal_tolerance
         self.latched = self.latched or near
         return bool(near or (self.arrival.latch_xy_goal_tolerance and self.latched))
 
     def reached(self, pose: np.ndarray, velocity: np.ndarray, goal: np.ndarray) -> bool:
-        """Whether place and yaw are right and the robot stands."""
+        """Whether position and yaw are right and the robot stands."""
         return (self.at_place(pose, goal)
                 and abs(wrap_angle(goal[2] - pose[2])) <= self.arrival.yaw_goal_tolerance
                 and self._stands(velocity))
@@ -62,7 +62,7 @@ class StopAndTurn:
 
     def command(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
                 velocity: np.ndarray, goal: np.ndarray) -> Command | None:
-        """What to do at the right place: stop, then turn. None where no turn is free."""
+        """The command at the right position: stop, then turn. None if no turn is free."""
         arrival = self.arrival
         standing = np.array([pose])
         angle = wrap_angle(goal[2] - pose[2])
@@ -83,7 +83,7 @@ class StopAndTurn:
 
 
 def turned(pose: np.ndarray, angle: float, step: float = TURN_STEP) -> np.ndarray:
-    """Poses (M, 3) of a turn on the spot by `angle`, rad, the present one first."""
+    """Poses (M, 3) of a turn on the spot by `angle`, rad, beginning with the current one."""
     steps = max(int(np.ceil(abs(angle) / step)), 1)
     poses = np.repeat(np.asarray(pose, float)[None], steps + 1, axis=0)
     poses[:, 2] += np.linspace(0.0, angle, steps + 1)

@@ -1,4 +1,4 @@
-"""How far each cell of a local costmap is from the path, and from the place to come to next."""
+"""The distance of each cell of a local costmap from the path, and from the next target."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import numpy as np
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.global_planning.potential import spread_everywhere
 
-TIGHT = 20.0  # as many cells does one count that the centre of the robot should not be in
+TIGHT = 20.0  # cost, in free cells, of a cell where the robot's centre should not be
 
 
 def distances_to(costmap: Costmap, points: np.ndarray, passable: np.ndarray) -> np.ndarray:
     """Way from each cell to the nearest of the points (N, 2), in cells (rows, columns); inf: none.
 
-    Around obstacles; the points' own cells are `passable` (M, 2) whatever is in them, as in
-    base_local_planner's map grid, where the path is believed more than the costmap.
+    The way leads around obstacles; cells of `passable` (M, 2) are free whatever is in them, as in
+    base_local_planner's map grid, where the path is trusted more than the costmap.
     """
     crossing = np.ones(costmap.cells.shape)
     crossing[costmap.cells >= INSCRIBED] = TIGHT
@@ -27,7 +27,7 @@ def distances_to(costmap: Costmap, points: np.ndarray, passable: np.ndarray) -> 
 
 
 def _around(costmap: Costmap, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Cells (S, 2) in and beside those of the points, and how far each is from its point, cells."""
+    """Cells (S, 2) of the points and next to them, and their distance from the point, in cells."""
     beside = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1], indexing="ij"), axis=-1).reshape(-1, 2)
     cells = (costmap.cells_of(points).reshape(-1, 1, 2) + beside)
     away = (costmap.centres_of(cells) - np.asarray(points).reshape(-1, 1, 2)) / costmap.resolution

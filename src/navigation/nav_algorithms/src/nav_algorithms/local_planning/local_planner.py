@@ -1,4 +1,4 @@
-"""What the local planners have in common: a path, its end, and a footprint that fits."""
+"""The common part of the local planners: a path, its end, and a footprint that fits."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from nav_algorithms.local_planning.velocities import Command, Limits
 class LocalPlanner(ABC):
     """Follows one path; `set_path` begins a new one. Subclasses choose the velocity.
 
-    Upstream's planners forget with every plan which way they turned last, and whether the place was
-    right already; with five plans a second they rock to and fro.
+    Upstream's planners forget with every plan which way they turned last, and whether the position
+    was right already; with five plans per second they oscillate.
     """
 
     def __init__(self, arrival: Arrival, oscillation: Oscillation) -> None:
@@ -27,9 +27,9 @@ class LocalPlanner(ABC):
         self.following: Following | None = None
 
     def set_path(self, path: np.ndarray, again: bool = False) -> None:
-        """Path (N, 3), poses in a fixed frame. Raises ValueError for what is no path.
+        """Path (N, 3), poses in a fixed frame. Raises ValueError for an invalid path.
 
-        `again`: on the way to the same goal as before.
+        `again`: the goal is the same as before.
         """
         self.following = Following(path)
         if not again:
@@ -44,8 +44,8 @@ class LocalPlanner(ABC):
 
     def command(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
                 velocity: np.ndarray, path_frame: np.ndarray = STANDSTILL) -> Command | None:
-        """The next velocity, within `limits`; None where all that can be had touch something or
-        lead nowhere, or where `velocity` is no number.
+        """The next velocity, within `limits`; None if all possible ones collide or lead nowhere, or
+        if `velocity` is not finite.
 
         `pose` (3,) in the costmap's frame; `velocity` (3,) in the base frame; `footprint` (K, 2);
         `path_frame`: pose of the path's frame in the costmap's.
@@ -60,7 +60,7 @@ class LocalPlanner(ABC):
 
     def _next(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
               velocity: np.ndarray, path_frame: np.ndarray) -> Command | None:
-        """What to do on the way or at its end; who brakes may still be faster than the limits."""
+        """A command on the way or at its end; braking, it may still exceed the limits."""
         path = self.following.left(pose, path_frame)
         footprint = footprints.shrunk_to_fit(costmap, np.asarray(footprint, float), pose)
         if footprint is None:
@@ -73,12 +73,12 @@ class LocalPlanner(ABC):
         self.oscillation.at(pose)
         best = self._best(costmap, footprint, pose, velocity, near, path[-1])
         if best is None:
-            self.oscillation.reset()  # what it forbids may be the only way out
+            self.oscillation.reset()  # its constraint may exclude the only way out
         return best
 
     @abstractmethod
     def limits(self) -> Limits:
-        """What is never exceeded."""
+        """Limits that are never exceeded."""
 
     @abstractmethod
     def _best(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,

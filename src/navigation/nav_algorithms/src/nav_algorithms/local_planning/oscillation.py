@@ -1,4 +1,4 @@
-"""No to and fro: a direction that was turned round may not be turned again on the spot."""
+"""Prevents oscillation: after a reversal, the direction may not be reversed again on the spot."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ import numpy as np
 
 from nav_algorithms.poses import wrap_angle
 
-GROWTH, LARGEST = 2.0, 3.0  # of the angle, rad; it is measured up to half a turn
+GROWTH, LARGEST = 2.0, 3.0  # of the angle, rad; differences are at most half a turn
 
 
 class Oscillation:
     """Per axis, the sign of the last motion, and the only sign allowed until the robot has moved.
 
     As dwa_local_planner's flags: forward and backward always count, strafing and turning only
-    where the robot does not drive. Unlike there, the angle that counts as a move grows each time
-    that the robot has only turned: it looks farther round instead of rocking for ever.
+    if the robot does not drive. Unlike there, the angle that counts as a move grows each time the
+    robot has only turned: it looks farther round instead of oscillating for ever.
     """
 
     def __init__(self, reset_distance: float, reset_angle: float) -> None:
@@ -23,7 +23,7 @@ class Oscillation:
         self.reset()
 
     def reset(self) -> None:
-        """Forgets all."""
+        """Forget everything."""
         self._begin_anew()
         self.angle = self.reset_angle
         self.spot = np.zeros(2)  # where the robot has only turned
@@ -34,11 +34,11 @@ class Oscillation:
         self.where = np.zeros(3)
 
     def allowed(self, samples: np.ndarray) -> np.ndarray:
-        """Which of the samples (S, 3) may be taken, bool (S,)."""
+        """Which of the samples (S, 3) are allowed, bool (S,)."""
         return (samples * self.only >= 0.0).all(axis=1)
 
     def took(self, velocity: np.ndarray, pose: np.ndarray, min_vel_trans: float) -> None:
-        """Remembers what was commanded at `pose`."""
+        """Remember the command at `pose`."""
         turned = False
         for axis in range(3):
             if axis and abs(velocity[0]) > min_vel_trans:
@@ -52,7 +52,7 @@ class Oscillation:
             self.where = np.array(pose, float)
 
     def at(self, pose: np.ndarray) -> None:
-        """Where the robot is: far enough from where it turned round, everything is allowed."""
+        """Take the robot's pose: far enough from where it reversed, everything is allowed."""
         if np.hypot(*(pose[:2] - self.spot)) > self.reset_distance:
             self.angle, self.spot = self.reset_angle, pose[:2].copy()
         if not self.only.any():

@@ -1,4 +1,4 @@
-"""A path that was planned with its headings, cut where the vehicle changes how it moves."""
+"""A path that was planned with headings, cut where the vehicle changes its kind of motion."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FORWARD, BACKWARD, ON_THE_SPOT = 1, -1, 0
 class Piece:
     """Poses (M, 3), M >= 2, driven FORWARD or BACKWARD, or turned ON_THE_SPOT.
 
-    `lengths` (M,): m driven from the first to each; on the spot rad turned.
+    `lengths` (M,): m driven from the first pose to each; on the spot, rad turned.
     """
 
     poses: np.ndarray
@@ -24,10 +24,10 @@ class Piece:
 
 
 def cut(path: np.ndarray) -> list[Piece]:
-    """The pieces of a path (N, 3); empty where nothing moves.
+    """The pieces of a path (N, 3); empty if nothing moves.
 
-    A step is driven backwards where the next pose lies behind the middle of the two headings, and
-    is a turn where only the heading changes.
+    A step is driven backwards if the next pose is behind, seen along the mean of both headings,
+    and is a turn if only the heading changes.
     """
     path = np.asarray(path, float)
     steps = np.diff(path[:, :2], axis=0)

@@ -1,4 +1,4 @@
-"""Regulated pure pursuit, for cars: the path is followed as it was planned, backwards where it is.
+"""Regulated pure pursuit, for cars: follows the path as planned, including backwards.
 
 R. Coulter, "Implementation of the pure pursuit path tracking algorithm" (1992); S. Macenski et al.,
 "Regulated pure pursuit for robot path tracking" (2023), whose parameters have these names.
@@ -19,11 +19,11 @@ from nav_algorithms.local_planning.pieces import ON_THE_SPOT, Piece, cut
 from nav_algorithms.local_planning.velocities import Command, Limits, turning
 from nav_algorithms.poses import compose, relative, wrap_angle
 
-AHEAD = 1.0       # m along the path in which the vehicle's place on it is looked for
-DONE = 0.02       # m before its end at which a piece is over
-ENOUGH = 0.15     # m before its end at which it is over where something is in the way
-STEERED = 0.3     # of the sharpest curvature: so far off are wheels that are still being turned
-STEERING_TIME = 0.6  # s, that a piece may begin slowly because of that
+AHEAD = 1.0       # m along the path that are searched for the vehicle's position
+DONE = 0.02       # m before its end where a piece is finished
+ENOUGH = 0.15     # m before its end where it is finished if something is in the way
+STEERED = 0.3     # of the maximum curvature: wheels that are farther off are still being steered
+STEERING_TIME = 0.6  # s, for which a piece may begin slowly because of that
 
 
 @dataclass(frozen=True)
@@ -65,9 +65,9 @@ class PurePursuit:
         self.goal: np.ndarray | None = None
 
     def set_path(self, path: np.ndarray, again: bool = False) -> None:
-        """Path (N, 3) with the heading at each pose, in a fixed frame. Raises ValueError.
+        """Path (N, 3) with the heading at each pose, in a fixed frame. ValueError if invalid.
 
-        `again`: on the way to the same goal as before; that makes no difference here.
+        `again`: the goal is the same as before; that makes no difference here.
         """
         path = np.array(path, float)
         if path.ndim != 2 or path.shape[1:] != (3,) or not len(path) or not np.isfinite(path).all():
@@ -88,15 +88,15 @@ class PurePursuit:
                 and abs(velocity[0]) <= self.settings.trans_stopped_vel)
 
     def _there(self, pose: np.ndarray, goal: np.ndarray, share: float = 1.0) -> bool:
-        """Whether a pose is the goal, within a `share` of the tolerance of its place."""
+        """Whether a pose is at the goal, within a `share` of the tolerance of position."""
         s = self.settings
         return bool(np.hypot(*(goal[:2] - pose[:2])) <= share * s.xy_goal_tolerance
                     and abs(wrap_angle(goal[2] - pose[2])) <= s.yaw_goal_tolerance)
 
     def command(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
                 velocity: np.ndarray, path_frame: np.ndarray = STANDSTILL) -> Command | None:
-        """The next velocity, within `limits`; None where the way is blocked, the vehicle has left
-        its path, or `velocity` is no number.
+        """The next velocity, within `limits`; None if the way is blocked, the vehicle has left its
+        path, or `velocity` is not finite.
 
         `pose` (3,) in the costmap's frame; `velocity` (3,) in the base frame; `footprint` (K, 2);
         `path_frame`: pose of the path's frame in the costmap's.
@@ -134,13 +134,13 @@ class PurePursuit:
         return standing if self._there(pose, goal) else None
 
     def limits(self) -> Limits:
-        """What is never exceeded."""
+        """Limits that are never exceeded."""
         s = self.settings
         fastest = max(s.desired_linear_vel, s.min_approach_linear_velocity), 0.0, s.max_vel_theta
         return Limits(tuple(-most for most in fastest), fastest)
 
     def _left(self, piece: Piece, poses: np.ndarray, pose: np.ndarray) -> float:
-        """What is left of a piece, m; the place on it, `at`, never goes back."""
+        """The rest of a piece, m; the position on it, `at`, never goes back."""
         lengths = piece.lengths
         near = np.nonzero(lengths[self.at:] <= lengths[self.at] + AHEAD)[0]
         self.at += int(np.hypot(*(poses[self.at + near, :2] - pose[:2]).T).argmin())
@@ -151,7 +151,7 @@ class PurePursuit:
 
     def _turn(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
               velocity: np.ndarray, angle: float) -> Command | None:
-        """On the spot towards the end of the piece."""
+        """Turn on the spot towards the end of the piece."""
         s = self.settings
         if not s.turn_in_place:
             return None
@@ -167,7 +167,7 @@ class PurePursuit:
     def _drive(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
                velocity: np.ndarray, piece: Piece, poses: np.ndarray, left: float
                ) -> Command | None:
-        """Along an arc to the carrot, or as near to that as is free."""
+        """Drive along an arc to the carrot, or the nearest to it that is free."""
         s = self.settings
         if np.hypot(*(poses[self.at, :2] - pose[:2])) > s.max_deviation:
             return None
@@ -180,7 +180,7 @@ class PurePursuit:
         wanted = float(np.clip(2 * offset[1] / max(offset[0] ** 2 + offset[1] ** 2, 1e-6),
                                -limit, limit))
         most = self._speed(costmap, footprint, pose, wanted, left)
-        # So far it must be free: to the carrot, or as far as it drives in the time and brakes.
+        # The arc must be free up to the carrot, or over the time to collision, or the braking way.
         ahead = min(reach, most * s.max_allowed_time_to_collision_up_to_carrot)
         ahead = max(ahead, speed ** 2 / (2 * s.acc_lim_x) + costmap.resolution)
         ahead = min(ahead, max(left, costmap.resolution))
@@ -192,7 +192,7 @@ class PurePursuit:
 
     def _paced(self, velocity: np.ndarray, wanted: float, curvature: float, arc: np.ndarray
                ) -> Command:
-        """Towards the wanted speed, no faster than the limits allow."""
+        """Approach the wanted speed, within the limits."""
         s = self.settings
         if not self._is_steered(velocity, curvature):
             wanted = float(np.sign(wanted)) * s.min_approach_linear_velocity
@@ -206,14 +206,14 @@ class PurePursuit:
         return Command(vx, 0.0, vx * curvature, arc)
 
     def _is_steered(self, velocity: np.ndarray, curvature: float) -> bool:
-        """Whether it may gather speed: the front wheels of a car take a while to be turned."""
+        """Whether it may speed up: the front wheels of a car take a while to steer."""
         s = self.settings
         speed = abs(velocity[0])
         if speed > 2 * s.min_approach_linear_velocity or self.steering_left <= 0:
             return True
         self.steering_left -= 1
         moves = speed > 0.5 * s.min_approach_linear_velocity
-        turned = velocity[2] / velocity[0] if moves else 0.0  # where it stands nobody can say
+        turned = velocity[2] / velocity[0] if moves else 0.0  # unknown while it stands
         return bool(abs(turned - curvature) <= STEERED / s.minimum_turning_radius)
 
     def _carrot(self, piece: Piece, poses: np.ndarray, reach: float) -> np.ndarray:
@@ -226,7 +226,7 @@ class PurePursuit:
 
     def _speed(self, costmap: Costmap, footprint: np.ndarray, pose: np.ndarray, curvature: float,
                left: float) -> float:
-        """m/s, above 0: slower in curves, beside obstacles and before the end."""
+        """The speed, m/s, above 0: slower in curves, near obstacles and before the end."""
         s = self.settings
         speed = s.desired_linear_vel
         if s.use_regulated_linear_velocity_scaling and curvature:

@@ -1,4 +1,4 @@
-"""Where many velocities lead: each is driven on paper over a costmap and its grids."""
+"""The outcome of many velocities: each trajectory is simulated on a costmap and its grids."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from nav_algorithms.compiled import compiled
 from nav_algorithms.costmap.footprint import cost_at
 
 LEGAL, OCCUPANCY, WORST, DISTANCE, PATH, GOAL, FRONT, ALIGNMENT = range(8)
-ON_PATH = 0.5  # cells; a grid does not tell apart what is nearer to the path
+ON_PATH = 0.5  # cells; points nearer to the path than this count as on it
 
 
 @compiled("void(f8[::1], f8[::1], f8[::1], f8[::1], f8, f8[::1])")
 def advance(pose, velocity, wanted, acceleration, dt, found):
-    """One step: velocity nears what is wanted, the pose moves along it. Both change in place."""
+    """One step: the velocity approaches `wanted`, in place, and `found` becomes the new pose."""
     for n in range(3):
         change = min(max(wanted[n] - velocity[n], -acceleration[n] * dt), acceleration[n] * dt)
         velocity[n] += change
@@ -25,7 +25,7 @@ def advance(pose, velocity, wanted, acceleration, dt, found):
 
 @compiled("i8(f8[::1], f8, f8, f8)")
 def steps_of(sample, sim_time, sim_granularity, angular_sim_granularity):
-    """Steps of a trajectory: no longer than a granularity, m or rad, each."""
+    """Steps of a trajectory: each no longer than its granularity, m or rad."""
     return max(int(np.ceil(np.hypot(sample[0], sample[1]) * sim_time / sim_granularity)),
                int(np.ceil(abs(sample[2]) * sim_time / angular_sim_granularity)), 1)
 
@@ -33,10 +33,10 @@ def steps_of(sample, sim_time, sim_granularity, angular_sim_granularity):
 @compiled("f8[:,::1](f8[::1], f8[::1], f8[::1], f8[::1], b1, f8, f8, f8)")
 def trajectory(pose, velocity, sample, acceleration, at_once, sim_time, sim_granularity,
                angular_sim_granularity):
-    """Poses (M, 3) of one sample (vx, vy, omega), the present one first.
+    """Poses (M, 3) of one sample (vx, vy, omega), beginning with the current one.
 
-    `at_once`: the robot has the sample's velocity from the beginning; else it nears it from its
-    `velocity` by `acceleration`, (3,).
+    `at_once`: the robot has the sample's velocity from the beginning; else it approaches it from
+    `velocity` with `acceleration`, (3,).
     """
     steps = steps_of(sample, sim_time, sim_granularity, angular_sim_granularity)
     poses = np.empty((steps + 1, 3))
@@ -49,7 +49,7 @@ def trajectory(pose, velocity, sample, acceleration, at_once, sim_time, sim_gran
 
 @compiled("f8(f8[:,::1], f8, f8, f8, f8, f8)")
 def _look_up(grid, resolution, origin_x, origin_y, x, y):
-    """The grid's value at a place; inf outside."""
+    """The grid's value at a point; inf outside."""
     row, column = np.floor((y - origin_y) / resolution), np.floor((x - origin_x) / resolution)
     if 0 <= row < grid.shape[0] and 0 <= column < grid.shape[1]:
         return grid[int(row), int(column)]
@@ -58,9 +58,9 @@ def _look_up(grid, resolution, origin_x, origin_y, x, y):
 
 @compiled("f8(f8[:,::1], f8, f8, f8, f8, f8)")
 def _between(grid, resolution, origin_x, origin_y, x, y):
-    """The grid's value at a place, between the centres of four cells; the cell's own beside inf.
+    """The grid's value at a point, interpolated between four cells; the cell's own next to inf.
 
-    A robot slower than a cell in all of its future would see no difference between its samples.
+    Without this, a robot that drives less than a cell in all would see no difference of samples.
     """
     row, column = (y - origin_y) / resolution - 0.5, (x - origin_x) / resolution - 0.5
     r, c = int(np.floor(row)), int(np.floor(column))
@@ -75,7 +75,7 @@ def _between(grid, resolution, origin_x, origin_y, x, y):
 
 @compiled("f8(f8[:,:,::1], f8[::1], f8, f8, f8, f8[::1], f8, f8[::1])")
 def _look(grids, weights, resolution, origin_x, origin_y, pose, forward, found):
-    """Fills PATH, GOAL, FRONT and ALIGNMENT of one pose; their weighted sum."""
+    """Fill PATH, GOAL, FRONT and ALIGNMENT of one pose; returns their weighted sum."""
     x, y, yaw = pose
     ahead_x, ahead_y = x + forward * np.cos(yaw), y + forward * np.sin(yaw)
     blocked = 2 * forward / resolution
@@ -98,19 +98,19 @@ def rollouts(cells, resolution, origin_x, origin_y, free_radii, circumscribed, f
              weights, samples, pose, velocity, acceleration, at_once, sim_time, sim_granularity,
              angular_sim_granularity, forward, goal_range, stop_time, scaling_speed,
              max_scaling_factor, max_vel_trans):
-    """What came of each sample (S, 3): (S, 8), the columns named at the top of this file.
+    """The results of the samples (S, 3): (S, 8), with the columns named at the top of this file.
 
-    `free_radii` (rows, columns), cells: how far each cell is from what must not be touched; beyond
-    the `circumscribed` radius, m, the footprint need not be looked at. `grids` (3, rows, columns):
-    distances to the path, the goal and the goal's front. LEGAL is 1, or 0 where the footprint
-    touched something. OCCUPANCY is the dearest cell below the last pose, WORST below any. PATH and
-    GOAL are looked up at the last pose, FRONT and ALIGNMENT `forward`, m, ahead of it; where that
-    place is in an obstacle, they are those of the pose and twice the way to there. DISTANCE is the
-    sum of these four by `weights` (4,). `goal_range`, m: a trajectory that goes past the goal is
-    looked at where it has gone so far. A turn on the spot can be ended anywhere: it is looked at
-    where its DISTANCE is least of where it can stand again, and need only be free as long as it
-    takes to brake and `stop_time`, s. Above `scaling_speed`, m/s, the footprint grows, by
-    `max_scaling_factor` at `max_vel_trans`.
+    `free_radii` (rows, columns), cells: the distance of each cell from those not to be touched;
+    beyond the `circumscribed` radius, m, the footprint is not checked. `grids` (3, rows, columns):
+    distances to the path, the goal and the goal's front. LEGAL is 1, or 0 if the footprint touched
+    something. OCCUPANCY is the highest cost below the last pose, WORST below any. PATH and GOAL
+    are looked up at the last pose, FRONT and ALIGNMENT `forward`, m, ahead of it; if that point is
+    in an obstacle, they are those of the pose plus twice the way to the point. DISTANCE is the sum
+    of these four by `weights` (4,). `goal_range`, m: a trajectory that goes past the goal is scored
+    where it has gone so far. A turn on the spot can be ended anywhere: it is scored where its
+    DISTANCE is lowest among the poses where it can stand again, and only has to be free for the
+    time that it takes to brake plus `stop_time`, s. Above `scaling_speed`, m/s, the footprint
+    grows, by `max_scaling_factor` at `max_vel_trans`.
     """
     found = np.zeros((len(samples), 8))
     poses = np.empty((2, 3))

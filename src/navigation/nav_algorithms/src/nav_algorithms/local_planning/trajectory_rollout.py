@@ -1,7 +1,7 @@
 """TrajectoryPlannerROS: forwards if that helps, else turn on the spot, else strafe, else back out.
 
-B. Gerkey and K. Konolige, "Planning and control in unstructured terrain" (2008), with the scores,
-names of base_local_planner.
+B. Gerkey and K. Konolige, "Planning and control in unstructured terrain" (2008), with the scores
+and parameter names of base_local_planner.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ from nav_algorithms.local_planning.velocities import (
 )
 from nav_algorithms.poses import wrap_angle
 
-HEADING_SCALE = 0.3  # upstream's, of a radian off the heading
+HEADING_SCALE = 0.3  # upstream's, per radian off the heading
 
 
 @dataclass(frozen=True)
 class TrajectoryRolloutSettings:
-    """Names of base_local_planner/TrajectoryPlannerROS; m, s, rad.
+    """Parameters of base_local_planner/TrajectoryPlannerROS; m, s, rad.
 
-    `prune_plan` has no effect: what is behind the robot is always left out. Upstream backs out
-    (`escape_vel`) even into what it touches; here only where that is free.
+    `prune_plan` has no effect: the path behind the robot is always left out. Upstream backs out
+    (`escape_vel`) even into obstacles; here it only does if that is free.
     """
 
     acc_lim_x: float
@@ -71,7 +71,7 @@ class TrajectoryRolloutSettings:
     escape_reset_theta: float
     trans_stopped_velocity: float
     rot_stopped_velocity: float
-    controller_frequency: float  # move_base's: one command a period
+    controller_frequency: float  # move_base's: one command per period
 
 
 class TrajectoryRollout(LocalPlanner):
@@ -89,7 +89,7 @@ class TrajectoryRollout(LocalPlanner):
     def limits(self) -> Limits:
         s = self.settings
         strafe = max(map(abs, s.y_vels), default=0.0) if s.holonomic_robot else 0.0
-        in_place = min(s.min_in_place_vel_theta, s.max_vel_theta)  # at the goal, to either side
+        in_place = min(s.min_in_place_vel_theta, s.max_vel_theta)  # at the goal, both ways
         return Limits((min(s.escape_vel, s.min_vel_x), -strafe, min(s.min_vel_theta, -in_place)),
                       (max(s.max_vel_x, s.min_vel_x), strafe, s.max_vel_theta))
 
@@ -115,7 +115,7 @@ class TrajectoryRollout(LocalPlanner):
         return scorer.command(taken)
 
     def _escaping(self, pose: np.ndarray) -> bool:
-        """Whether the robot still backs out of where nothing else was free."""
+        """Whether the robot is still backing out of where nothing else was free."""
         if self.escaped_from is None:
             return False
         moved = np.hypot(*(pose[:2] - self.escaped_from[:2]))
@@ -130,13 +130,13 @@ class TrajectoryRollout(LocalPlanner):
 
     def _forwards_or_turning(self, scorer: _Scorer, velocity: np.ndarray, to_goal: float
                              ) -> np.ndarray | None:
-        """The cheapest drive; a turn on the spot in its place, if that costs no more."""
+        """The cheapest drive; or a turn on the spot instead, if that costs no more."""
         s = self.settings
         high = np.array([max(min(s.max_vel_x, to_goal / s.sim_time), s.min_vel_x), 0.0,
                          s.max_vel_theta])
         low = np.array([s.min_vel_x, 0.0, s.min_vel_theta])
         duration = 1.0 / s.controller_frequency if s.dwa else s.sim_time
-        # The slowest speed and turn can be had from a stand at once, see `window`.
+        # The slowest speed and turn are possible from standstill at once, see `window`.
         low, high = window(velocity, low, high, np.array([s.acc_lim_x, 0.0, s.acc_lim_theta]),
                            duration, np.array([s.min_vel_x, 0.0, s.min_in_place_vel_theta]))
         drives = all_samples(low, high, (s.vx_samples, 1, s.vtheta_samples))
@@ -154,7 +154,7 @@ class TrajectoryRollout(LocalPlanner):
 
 
 class _Scorer:
-    """One moment: what samples cost that begin at this pose, on this costmap."""
+    """Scores samples that begin at this pose, on this costmap."""
 
     def __init__(self, settings: TrajectoryRolloutSettings, costmap: Costmap,
                  footprint: np.ndarray, pose: np.ndarray, velocity: np.ndarray, near: np.ndarray
@@ -184,7 +184,7 @@ class _Scorer:
             np.inf, 0.0, 0.0)
 
     def costs(self, candidates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The candidates (S, 3) and what each costs, (S,), inf where it touches something."""
+        """The candidates (S, 3) and their costs (S,), inf if they collide."""
         found = self._rolled(candidates, self.scales)
         cost = (found[:, rollout.DISTANCE]
                 + self.settings.occdist_scale * found[:, rollout.WORST])
@@ -193,7 +193,7 @@ class _Scorer:
         return candidates, np.where(found[:, rollout.LEGAL] > 0.0, cost, np.inf)
 
     def nearest_ahead(self, candidates: np.ndarray, limit: float) -> np.ndarray | None:
-        """Of those that cost at most `limit`, the one that looks to where the goal is nearest."""
+        """Of those that cost at most `limit`, the one that faces the point nearest to the goal."""
         found = self._rolled(candidates, self.scales + np.array([0.0, 0.0, 1e-3, 0.0]))
         cost = (found[:, rollout.PATH:rollout.GOAL + 1] @ self.scales[:2]
                 + self.settings.occdist_scale * found[:, rollout.WORST])
@@ -203,14 +203,14 @@ class _Scorer:
         return candidates[np.where(fit, found[:, rollout.FRONT], np.inf).argmin()]
 
     def first_free(self, candidates: np.ndarray) -> np.ndarray | None:
-        """The first that touches nothing, wherever it leads."""
+        """The first that does not collide, wherever it leads."""
         for candidate in np.array(candidates, float):
             if (footprints.costs(self.costmap, self.footprint, self._driven(candidate)) >= 0).all():
                 return candidate
         return None
 
     def _off_heading(self, candidates: np.ndarray) -> np.ndarray:
-        """Angle (S,), rad, between where each looks after a while and the farthest free point."""
+        """Angle (S,), rad, between the heading after a while and the path's farthest free point."""
         after = self.settings.heading_scoring_timestep
         target = self.near[-1, :2]
         for point in self.near[::-max(len(self.near) // 20, 1), :2]:
@@ -232,12 +232,12 @@ class _Scorer:
                                   s.angular_sim_granularity)
 
     def command(self, candidate: np.ndarray) -> Command:
-        """The candidate with where it leads."""
+        """The candidate with its trajectory."""
         return Command(*map(float, candidate), self._driven(candidate))
 
 
 def _square_distances(costmap: Costmap, place: np.ndarray) -> np.ndarray:
-    """Of each cell's middle from a place (2,), as the crow flies, m^2: upstream's attractor."""
+    """Squared distance of each cell's centre from a point (2,), m^2, as upstream's attractor."""
     rows, columns = np.indices(costmap.cells.shape)
     middles = (np.stack((columns, rows), axis=-1) + 0.5) * costmap.resolution + costmap.origin
     return ((middles - place)**2).sum(axis=-1)

@@ -1,4 +1,4 @@
-"""Velocities (vx, vy, omega) in the base frame, m/s and rad/s: what may be commanded next."""
+"""Velocities (vx, vy, omega) in the base frame, m/s and rad/s: those that may be commanded next."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Command:
-    """A velocity, and where it leads: `trajectory` (M, 3), poses in the costmap's frame."""
+    """A velocity, and its trajectory (M, 3), poses in the costmap's frame."""
 
     vx: float
     vy: float
@@ -22,21 +22,21 @@ class Command:
         return np.array([self.vx, self.vy, self.omega])
 
     def within(self, limits: Limits) -> Command:
-        """The same, no faster than the limits."""
+        """The same, limited to `limits`."""
         vx, vy, omega = map(float, limits.clip(self.velocity))
         return replace(self, vx=vx, vy=vy, omega=omega)
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What may be commanded: 0, and from `low` (3,) to `high` (3,), no faster than `speed`, m/s."""
+    """Velocities that may be commanded: 0, and `low` (3,) to `high` (3,), up to `speed`, m/s."""
 
     low: tuple[float, float, float]
     high: tuple[float, float, float]
     speed: float = np.inf
 
     def clip(self, velocity: np.ndarray) -> np.ndarray:
-        """The nearest velocity (3,) within them, in the same direction where `speed` limits it."""
+        """The nearest velocity (3,) within them; `speed` keeps its direction."""
         found = np.clip(velocity, np.minimum(self.low, 0.0), np.maximum(self.high, 0.0))
         found[:2] *= min(self.speed / max(np.hypot(found[0], found[1]), 1e-9), 1.0)
         return found
@@ -50,12 +50,12 @@ class Limits:
 
 def window(velocity: np.ndarray, low: np.ndarray, high: np.ndarray, acceleration: np.ndarray,
            duration: float, least: np.ndarray | float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """The least and the greatest velocity (3,) that can be had in `duration`, s, within limits.
+    """The lowest and the highest velocity (3,) reachable in `duration`, s, within the limits.
 
-    From a velocity outside the limits it is the nearest within: what was measured must not lead to
-    commands beyond them. `least` (3,): the slowest that is worth commanding. Who comes below it can
-    have it at once in either direction: else a robot would never come from standing to turning, or
-    to driving from a turn.
+    From a velocity outside the limits it is the nearest within: a measurement must not lead to
+    commands beyond them. `least` (3,): the slowest that is worth commanding. Below it, a robot can
+    have it at once in either direction: otherwise it would never start to turn from standstill, or
+    to drive from a turn.
     """
     reach = np.asarray(acceleration) * duration
     lowest, highest = velocity - reach, velocity + reach
@@ -66,7 +66,7 @@ def window(velocity: np.ndarray, low: np.ndarray, high: np.ndarray, acceleration
 
 
 def samples(low: float, high: float, count: int) -> np.ndarray:
-    """`count` velocities from `low` to `high`, evenly; 0 is one more where it lies between."""
+    """`count` velocities evenly from `low` to `high`; plus 0 if it is between them."""
     if high - low < 1e-9:
         return np.array([low])
     found = np.linspace(low, high, max(count, 2))
@@ -76,23 +76,23 @@ def samples(low: float, high: float, count: int) -> np.ndarray:
 
 
 def all_samples(low: np.ndarray, high: np.ndarray, counts: tuple[int, int, int]) -> np.ndarray:
-    """Each of the samples in x with each in y and each in yaw, (S, 3)."""
+    """All combinations of the samples in x, y and yaw, (S, 3)."""
     axes = [samples(low[n], high[n], counts[n]) for n in range(3)]
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 def slowed(velocity: np.ndarray, acceleration: np.ndarray, period: float) -> np.ndarray:
-    """The next velocity (3,) on the way to standing still."""
+    """The next velocity (3,) while braking to standstill."""
     size = np.maximum(np.abs(velocity) - np.asarray(acceleration) * period, 0.0)
     return np.sign(velocity) * size
 
 
 def turning(angle: float, omega: float, least: float, most: float, acceleration: float,
             period: float) -> float:
-    """The next omega, rad/s, of a turn by `angle`, rad, that ends standing.
+    """The next omega, rad/s, of a turn by `angle`, rad, that ends at standstill.
 
-    Between `least` and `most`, no faster than can be braked over the angle that is left, and no
-    further from the present `omega` than the acceleration allows in a period, but never above
+    Between `least` and `most`, slow enough to brake over the angle that is left, and changed from
+    the current `omega` by no more than the acceleration allows in a period, but never above
     `most`.
     """
     fastest = min(most, np.sqrt(2 * acceleration * abs(angle)))

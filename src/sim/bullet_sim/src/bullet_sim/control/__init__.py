@@ -1,1 +1,1 @@
-"""Joint control: hardware with handles, limits, PID, and the laws of joint controllers."""
+"""Joint control: hardware with handles, limits, PID, and joint controllers."""

@@ -1,4 +1,4 @@
-"""A controller's access to a joint: its state to read, and a command to write."""
+"""A controller's access to a joint: its state, and its command."""
 
 from dataclasses import dataclass
 
@@ -9,14 +9,14 @@ INTERFACES = ("effort", "position", "velocity")
 
 @dataclass(slots=True, eq=False)
 class JointHandle:
-    """State of one joint, refreshed by the hardware before controllers are updated."""
+    """State of one joint, updated by the hardware before the controllers."""
 
     name: str
     type: str  # revolute, continuous or prismatic
     limits: JointLimits = JointLimits()
     position: float = 0.0  # rad or m; a continuous joint counts its turns
     velocity: float = 0.0  # rad/s or m/s
-    effort: float = 0.0  # N m or N, what its motor did in the last step
+    effort: float = 0.0  # N m or N, of its motor in the last step
 
 
 @dataclass(slots=True, eq=False)
@@ -28,5 +28,5 @@ class CommandHandle:
     command: float = 0.0  # N m or N, rad or m, rad/s or m/s
 
     def rest(self) -> None:
-        """No effort, no speed, or the position the joint has now."""
+        """No effort, no speed, or the joint's current position."""
         self.command = self.joint.position if self.interface == "position" else 0.0

@@ -1,6 +1,6 @@
-"""A model's joints as ros_control sees them: read, and driven within their limits.
+"""A model's joints for ros_control: read, and driven within their limits.
 
-The semantics are those of gazebo_ros_control's default_robot_hw_sim.cpp: a joint has one interface.
+The semantics are those of gazebo_ros_control's default_robot_hw_sim.cpp: one interface per joint.
 """
 
 from collections.abc import Iterable, Mapping
@@ -18,9 +18,9 @@ NO_LIMITS = JointLimits()
 
 
 class RobotHardware:
-    """Handles of all joints that have a transmission, by name. Used in the loop's thread.
+    """Handles of all joints that have a transmission, by name. Used in the loop's thread only.
 
-    SimulationError for a transmission of a joint that the model lacks.
+    SimulationError for a transmission of a joint that the model does not have.
     """
 
     def __init__(self, model: Model, transmissions: Iterable[Transmission],
@@ -54,7 +54,7 @@ class RobotHardware:
     # --- at each step
 
     def read(self) -> None:
-        """Refresh the state of all joints from the engine."""
+        """Update the state of all joints from the engine."""
         for group, joints, _ in self._effort_groups:
             for joint, row in zip(joints, group.states(), strict=True):
                 joint.position, joint.velocity, _, _ = row
@@ -63,12 +63,12 @@ class RobotHardware:
                 joint.position, joint.velocity, _, joint.effort = row
 
     def write(self, period: float) -> None:
-        """Hand the commands, within the limits, to the engine for the next step.
+        """Pass the commands, within the limits, to the engine for the next step.
 
         `period` (s) is the time since the last write.
         """
         for handle in self._handles.values():
-            if handle.command != handle.command:  # not a number: the engine must not see it
+            if handle.command != handle.command:  # NaN: must not reach the engine
                 handle.rest()
         for handle, command in self._held:
             handle.command = command
@@ -78,7 +78,7 @@ class RobotHardware:
             motor.drive(period)
 
     def stop(self, on: bool) -> None:
-        """An emergency stop: no effort, no speed, positions are held, whatever is commanded."""
+        """Emergency stop: no effort, no speed, positions held, whatever is commanded."""
         if on and not self._held:
             for handle in self._handles.values():
                 handle.rest()
@@ -94,7 +94,7 @@ class RobotHardware:
     # --- for controllers
 
     def joint_handle(self, name: str) -> JointHandle:
-        """The state of a joint. UnknownName without one of that name."""
+        """The state of a joint. UnknownName if there is none of that name."""
         if name not in self.joints:
             raise UnknownName(f"joint with a transmission in model {self.model_name}", name,
                               self.joints)

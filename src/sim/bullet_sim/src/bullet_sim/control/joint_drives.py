@@ -1,6 +1,6 @@
-"""How a command becomes the effort or motion of a simulated joint: one class for each way.
+"""Turns a command into the effort or motion of a simulated joint: one class for each method.
 
-The ways, and when each is taken, are those of gazebo_ros_control's default_robot_hw_sim.cpp.
+The methods, and when each is used, are those of gazebo_ros_control's default_robot_hw_sim.cpp.
 """
 
 from dataclasses import replace
@@ -12,12 +12,12 @@ from bullet_sim.description import JointLimits
 from bullet_sim.joint import Joint
 from bullet_sim.pose import shortest_angular_distance
 
-STRONGEST = 1e6  # N m or N: where there is no limit; the engine makes NaN of much more
+STRONGEST = 1e6  # N m or N, if there is no limit; much more becomes NaN in the engine
 ARRIVED = 1e-9  # rad or m
 
 
 class JointDrive:
-    """Turns a joint's command, within its limits, into what the engine does."""
+    """Turns a joint's command, within its limits, into settings of the engine."""
 
     def __init__(self, handle: CommandHandle, limits: JointLimits):
         self.handle = handle
@@ -25,22 +25,22 @@ class JointDrive:
         self._limits = limits
 
     def reset(self) -> None:
-        """After a reset of the joint."""
+        """Called after a reset of the joint."""
         self.limiter.reset()
 
 
 class EffortDrive(JointDrive):
-    """The effort that was commanded, each step."""
+    """Applies the commanded effort in each step."""
 
     def effort(self, period: float) -> float:
-        """N m or N, for the next step of `period` (s); the joint's handle shows it from then on."""
+        """N m or N, for the next step of `period` (s); also set in the joint's handle."""
         effort = self.limiter.apply(self.handle.command, period)
         self.handle.joint.effort = effort
         return effort
 
 
 class PidDrive(EffortDrive):
-    """A position or velocity command with gains: the effort that a PID finds for the error."""
+    """A position or velocity command with gains: a PID turns the error into an effort."""
 
     def __init__(self, handle: CommandHandle, limits: JointLimits, gains: PidGains):
         super().__init__(handle, limits)
@@ -60,13 +60,13 @@ class PidDrive(EffortDrive):
         return effort
 
     def reset(self) -> None:
-        """After a reset of the joint."""
+        """Called after a reset of the joint."""
         super().reset()
         self.pid.reset()
 
 
 class VelocityMotor(JointDrive):
-    """A velocity command without gains: a motor with the effort limit as its strength."""
+    """A velocity command without gains: a motor with the effort limit as its maximum."""
 
     def __init__(self, handle: CommandHandle, limits: JointLimits, joint: Joint):
         super().__init__(handle, limits)
@@ -79,11 +79,11 @@ class VelocityMotor(JointDrive):
 
 
 class PositionMotor(VelocityMotor):
-    """A position command without gains: at the end of the next step the joint is there.
+    """A position command without gains: the joint is there at the end of the next step.
 
-    default_robot_hw_sim.cpp, writeSim, puts it there without asking for forces; we move it there,
-    at the velocity limit at most, with a motor that nothing can hold, so that its rate is true and
-    moves what it carries.
+    default_robot_hw_sim.cpp, writeSim, sets the position regardless of forces; here the joint moves
+    there, at the velocity limit at most, with a motor that nothing can hold: its velocity is real
+    and moves what it carries.
     """
 
     def drive(self, period: float) -> None:
@@ -96,9 +96,9 @@ class PositionMotor(VelocityMotor):
 
 
 def position_error(joint: JointHandle, target: float) -> float:
-    """From where the joint is to the target: a continuous joint turns the shorter way round.
+    """The error from the joint to the target: a continuous joint turns the shorter way round.
 
-    A revolute one has no other way than the straight one, as long as both are within its limits.
+    A revolute one only has the direct way, as long as both are within its limits.
     """
     if joint.type == "continuous":
         return shortest_angular_distance(joint.position, target)

@@ -1,4 +1,4 @@
-"""How commands are kept within the limits of a joint, after joint_limits_interface's laws."""
+"""Keeps commands within the limits of a joint, as joint_limits_interface does."""
 
 import math
 from abc import ABC, abstractmethod
@@ -20,7 +20,7 @@ def clamp(value: float, low: float, high: float) -> float:
 
 
 class Limiter(ABC):
-    """Keeps the commands of one joint within limits. `apply` is called once a step."""
+    """Keeps the commands of one joint within limits. `apply` is called once per step."""
 
     def __init__(self, joint: JointState, limits: JointLimits):
         self._joint = joint
@@ -28,15 +28,15 @@ class Limiter(ABC):
         self.reset()
 
     def reset(self) -> None:
-        """After a reset of the joint, or a stop: forget the command before."""
+        """After a reset of the joint, or a stop: forget the previous command."""
         self._last: float | None = None
 
     @abstractmethod
     def apply(self, command: float, period: float) -> float:
-        """The command that may be given, `period` (s) after the one before."""
+        """The allowed command, `period` (s) after the previous one."""
 
     def _soft_speeds(self, position: float) -> tuple[float, float]:
-        """Least and greatest speed at a position, as soft limits have it."""
+        """Minimum and maximum speed at a position, by the soft limits."""
         limits, soft = self._limits, self._limits.soft
         most = limits.velocity
         if not limits.has_position:
@@ -46,7 +46,7 @@ class Limiter(ABC):
 
 
 class EffortLimiter(Limiter):
-    """Effort limit; and none that leads further out of position or velocity limits."""
+    """Effort limit; and no effort that leads further out of position or velocity limits."""
 
     def apply(self, command: float, period: float) -> float:
         """N m or N."""
@@ -69,7 +69,7 @@ class EffortLimiter(Limiter):
 
 
 class PositionLimiter(Limiter):
-    """Position limits, and no step that would be faster than the velocity limit."""
+    """Position limits, and no step that exceeds the velocity limit."""
 
     def apply(self, command: float, period: float) -> float:
         """rad or m."""
@@ -86,7 +86,7 @@ class PositionLimiter(Limiter):
 
 
 class VelocityLimiter(Limiter):
-    """Velocity limit, and acceleration limit where there is one."""
+    """Velocity limit, and acceleration limit if there is one."""
 
     def apply(self, command: float, period: float) -> float:
         """rad/s or m/s."""

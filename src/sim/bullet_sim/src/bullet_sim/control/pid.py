@@ -1,4 +1,4 @@
-"""A PID controller with a clamped integral, after control_toolbox's laws."""
+"""A PID controller with a clamped integral, as control_toolbox's."""
 
 import math
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PidGains:
-    """Gains and the bounds of the integral term, in the unit of the output."""
+    """Gains and the limits of the integral term, in the unit of the output."""
 
     p: float = 0.0
     i: float = 0.0
@@ -17,22 +17,22 @@ class PidGains:
 
 
 class Pid:
-    """`compute` at each update; gains may be exchanged in between."""
+    """Call `compute` at each update; gains may be replaced in between."""
 
     def __init__(self, gains: PidGains):
         self.gains = gains
         self.reset()
 
     def reset(self) -> None:
-        """Forget the errors of the past."""
+        """Forget past errors."""
         self.error = self.error_rate = self.error_integral = 0.0
         self.output = 0.0
         self._last_error = 0.0
 
     def compute(self, error: float, period: float, error_rate: float | None = None) -> float:
-        """The output for an error over the last `period` (s); 0 for what is no finite number.
+        """The output for an error over the last `period` (s); 0 if it is not finite.
 
-        Without `error_rate` the difference quotient is taken, at the first call from an error of 0.
+        Without `error_rate` the error's difference quotient is used, from an error of 0 at first.
         """
         if period <= 0.0 or not math.isfinite(error):
             return 0.0

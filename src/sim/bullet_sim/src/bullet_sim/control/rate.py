@@ -1,4 +1,4 @@
-"""When something that has a rate is due, in simulated seconds."""
+"""Decides when something with a rate is due, in simulated seconds."""
 
 import math
 
@@ -8,7 +8,7 @@ ROUNDING = 1e-9  # s; times are products of whole ticks and may be off by roundi
 
 
 class Rate:
-    """Due `rate_hz` times a simulated second, exact in the long run; 0 means at every update.
+    """Due `rate_hz` times per simulated second, exact in the long run; 0 means at every update.
 
     SimulationError for a rate that is negative or not finite.
     """
@@ -23,7 +23,7 @@ class Rate:
     def due(self, time: float) -> bool:
         """Whether it is due (`time` in s, simulated); to be called at each update.
 
-        The first time it is. Time that went back, or a long pause, restarts the count.
+        The first time it is. If time went back, or after a long pause, the count restarts.
         """
         if time + ROUNDING < self._next:
             if self._next - time <= self._period + ROUNDING:

@@ -1,8 +1,8 @@
-"""A car as a bicycle: one virtual rear wheel and one virtual steering joint move its real ones.
+"""A car as a bicycle: a virtual rear wheel and a virtual steering joint move its real ones.
 
 As steer_bot_hardware_gazebo for ackermann_steering_controller, which takes one joint each.
-Its steer_bot_hardware_gazebo.cpp gives all four wheels one speed; here the rear ones differ and the
-front ones roll, so that the car drives the circle that its odometry counts.
+Its steer_bot_hardware_gazebo.cpp gives all four wheels one speed; here the rear ones differ and
+the front ones roll, so that the car drives the circle that its odometry computes.
 """
 
 import math
@@ -16,7 +16,7 @@ from bullet_sim.errors import check_lengths
 from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.model import Model
 
-STEEPEST = math.radians(89.0)  # of the virtual joint; beyond it there is no circle to drive
+STEEPEST = math.radians(89.0)  # of the virtual joint; at larger angles there is no usable circle
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class SteerBotGeometry:
         check_lengths(self, "track", "wheelbase")
 
     def angles(self, middle: float) -> tuple[float, float]:
-        """Of the right and the left wheel (rad), for that angle half-way between them (rad).
+        """Angles of the right and the left wheel (rad), for the angle half-way between them (rad).
 
         All wheels turn about one point on the rear axle: cot(wheel) = cot(middle) +- track / 2h.
         """
@@ -41,14 +41,14 @@ class SteerBotGeometry:
         return (math.atan2(slope, 1 + part * slope), math.atan2(slope, 1 - part * slope))
 
     def shares(self, middle: float) -> tuple[float, float]:
-        """Of the rear axle's speed, for the right and the left wheel: as a differential does it."""
+        """Factors of the rear axle's speed for the right and the left wheel, as a differential."""
         if not self.ackermann:
             return 1.0, 1.0
         part = self.track / (2 * self.wheelbase) * math.tan(middle)
         return 1 + part, 1 - part
 
     def middle(self, right: float, left: float) -> float:
-        """The angle half-way between those of two wheels (rad)."""
+        """The angle half-way between those of both wheels (rad)."""
         if not self.ackermann:
             return (right + left) / 2
         part = self.track / (2 * self.wheelbase)
@@ -59,14 +59,14 @@ class SteerBotGeometry:
 class SteerBotHardware(RobotHardware):
     """Virtual joints `rear_wheel` (velocity) and `front_steer` (position), and the real ones."""
 
-    _steer: CommandHandle | None = None  # until the real joints are there
+    _steer: CommandHandle | None = None  # until the real joints are found
 
     def __init__(self, model: Model, rear_wheel: str, front_steer: str,
                  rear_wheels: Sequence[str], front_steers: Sequence[str],
                  geometry: SteerBotGeometry, limits: Mapping[str, JointLimits]):
         """`rear_wheels` and `front_steers` are real joints, each the right one before the left.
 
-        SimulationError of a joint that the model has not, or of limits that cannot be.
+        SimulationError for a joint that the model does not have, or for impossible limits.
         """
         super().__init__(model, [
             *(Transmission(name, name, "velocity") for name in rear_wheels),
@@ -84,7 +84,7 @@ class SteerBotHardware(RobotHardware):
         return handle
 
     def read(self) -> None:
-        """Refresh all joints; the virtual ones are means of the real ones."""
+        """Update all joints; the virtual ones are means of the real ones."""
         super().read()
         if self._steer is not None:
             self._virtual_read()

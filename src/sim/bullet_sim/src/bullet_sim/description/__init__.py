@@ -1,7 +1,7 @@
 """The content of model and world files as plain data: no mesh is opened, no physics is imported.
 
 All lengths in m, angles in rad, masses in kg. Link poses are in the model frame with every joint at
-zero. This is the package's face: others import from here, not from the files by subject.
+zero. This is the package's interface: others import from here, not from its modules.
 """
 
 from bullet_sim.description.joints import JointAxis as JointAxis

@@ -1,4 +1,4 @@
-"""Links: mass, and what is seen, touched and mounted on them."""
+"""Links: mass, visuals, collisions, and what is mounted on them."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from bullet_sim.pose import IDENTITY, Pose
 
 @dataclass(frozen=True)
 class Inertial:
-    """What a link weighs, and how that is spread."""
+    """Mass of a link, and its distribution."""
 
     mass: float = 1.0
     pose: Pose = IDENTITY  # centre of mass and axes of the tensor, in the link frame
@@ -22,7 +22,7 @@ class Inertial:
 
 @dataclass(frozen=True)
 class Visual:
-    """What is seen of a link."""
+    """A visible part of a link."""
 
     name: str
     geometry: Geometry
@@ -35,7 +35,7 @@ class Visual:
 
 @dataclass(frozen=True)
 class Collision:
-    """What others touch of a link."""
+    """A part of a link that collides with others."""
 
     name: str
     geometry: Geometry

@@ -1,4 +1,4 @@
-"""Models: links and joints, plugins, models nested in them, and an actor's way."""
+"""Models: links and joints, plugins, nested models, and an actor's trajectory."""
 
 from dataclasses import dataclass, field
 
@@ -10,7 +10,7 @@ from bullet_sim.pose import IDENTITY, Pose
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Where an actor walks, whatever is in its way: straight from waypoint to waypoint."""
+    """The way of an actor, regardless of obstacles: straight between waypoints."""
 
     waypoints: tuple[tuple[float, Pose], ...]  # s since the start and pose in the world, in order
     loop: bool = True
@@ -20,18 +20,18 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class ModelDescription:
-    """Links that joints hold together, and who drives and reads them."""
+    """Links connected by joints, with the plugins that drive and read them."""
 
     name: str
     pose: Pose = IDENTITY  # in the world
     static: bool = False
     self_collide: bool = False
-    auto_disables: bool = True  # <allow_auto_disable>: whether what hardly moves is held still
+    auto_disables: bool = True  # <allow_auto_disable>: links that hardly move are held still
     links: tuple[LinkDescription, ...] = ()
     joints: tuple[JointDescription, ...] = ()
     plugins: tuple[PluginDescription, ...] = ()
     child_models: tuple[str, ...] = ()  # names of nested models; their links are named nested::link
     child_poses: dict[str, Pose] = field(default_factory=dict)  # of nested models in this one
     lumped: dict[str, tuple[str, Pose]] = field(default_factory=dict)
-    # link that fixed-joint lumping took away -> (surviving link, pose in that link's frame)
+    # link removed by fixed-joint lumping -> (surviving link, pose in that link's frame)
     trajectory: Trajectory | None = None  # of an actor

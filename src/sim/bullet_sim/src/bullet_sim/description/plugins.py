@@ -1,4 +1,4 @@
-"""A plugin's element as the file has it, not interpreted."""
+"""A plugin's element as written in the file, not interpreted."""
 
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
@@ -6,7 +6,7 @@ from xml.etree.ElementTree import Element
 
 @dataclass(frozen=True)
 class PluginDescription:
-    """A `<plugin>` element as written; who loads it reads the parameters."""
+    """A `<plugin>` element as written; its loader reads the parameters."""
 
     name: str
     filename: str

@@ -1,4 +1,4 @@
-"""What is drawn beside the models: lights, fog, sky and background."""
+"""What is drawn besides the models: lights, fog, sky and background."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from bullet_sim.pose import IDENTITY, Pose, Vector3
 
 @dataclass(frozen=True)
 class LightDescription:
-    """A lamp; poses in the world, or in the frame of the link that carries it."""
+    """A light; poses in the world, or in the frame of the link that carries it."""
 
     name: str
     type: str = "point"  # point, directional, spot
@@ -28,7 +28,7 @@ class LightDescription:
 
 @dataclass(frozen=True)
 class Fog:
-    """Mixes in a colour with the depth z (m): all of it from `end` on, or 1 - e^-z, 1 - e^-z^2."""
+    """Blends in a colour by depth z (m): fully from `end` on, or 1 - e^-z, 1 - e^-z^2."""
 
     type: str = "none"  # none, linear, exp, exp2
     colour: Rgba = (1.0, 1.0, 1.0, 1.0)
@@ -39,7 +39,7 @@ class Fog:
 
 @dataclass(frozen=True)
 class SceneDescription:
-    """What is round everything that is drawn."""
+    """The surroundings of everything that is drawn."""
 
     ambient: Rgba = (0.4, 0.4, 0.4, 1.0)
     background: Rgba = (0.7, 0.7, 0.7, 1.0)

@@ -1,4 +1,4 @@
-"""Sensors on links: what they measure, how often and how badly; angles in rad, lengths in m."""
+"""Sensors on links: what they measure, their rates and their noise; angles in rad, lengths in m."""
 
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
@@ -6,7 +6,7 @@ from xml.etree.ElementTree import Element
 from bullet_sim.description.plugins import PluginDescription
 from bullet_sim.pose import IDENTITY, Pose
 
-WIDE_ANGLE = "wideanglecamera"  # looks through its `<lens>`
+WIDE_ANGLE = "wideanglecamera"  # projects through its `<lens>`
 CAMERA_TYPES = ("camera", WIDE_ANGLE, "multicamera", "depth", "depth_camera", "rgbd_camera")
 RAY_TYPES = ("ray", "lidar", "gpu_ray", "gpu_lidar")
 SENSOR_TYPES = (*CAMERA_TYPES, *RAY_TYPES, "imu", "contact", "force_torque")  # simulated
@@ -14,12 +14,12 @@ SENSOR_TYPES = (*CAMERA_TYPES, *RAY_TYPES, "imu", "contact", "force_torque")  # 
 
 @dataclass(frozen=True)
 class Noise:
-    """Errors of a reading, in its own unit."""
+    """Errors of a reading, in the reading's unit."""
 
     type: str = "none"  # none, gaussian or gaussian_quantized
     mean: float = 0.0
     stddev: float = 0.0
-    bias_mean: float = 0.0  # of an error drawn once; its sign is drawn, too
+    bias_mean: float = 0.0  # of an error drawn once, with a random sign
     bias_stddev: float = 0.0
     precision: float = 0.0  # gaussian_quantized: readings are multiples of it
 
@@ -28,19 +28,19 @@ class Noise:
 class Lens:
     """A wide-angle lens, `<lens>`: r = c1 f fun(theta / c2 + c3), r = 1 half an image wide."""
 
-    c1: float = 2.0  # these four make it stereographic, as SDF has it without <type>
+    c1: float = 2.0  # these four are SDF's stereographic lens, the default without <type>
     c2: float = 2.0
     c3: float = 0.0  # rad
     function: str = "tan"  # sin, tan or id
     f: float = 1.0
-    scale_to_hfov: bool = True  # f is chosen so that the picture is <horizontal_fov> wide
+    scale_to_hfov: bool = True  # f is chosen so that the image is <horizontal_fov> wide
     cutoff_angle: float = 1.5707  # rad from the axis
-    env_texture_size: int = 256  # px, side of each of the pictures it is made from
+    env_texture_size: int = 256  # px, side of each of the images it is made from
 
 
 @dataclass(frozen=True)
 class CameraDescription:
-    """One camera: size, optics and errors of its picture."""
+    """One camera: image size, optics and noise."""
 
     horizontal_fov: float = 1.047
     width: int = 320  # px
@@ -50,7 +50,7 @@ class CameraDescription:
     far: float = 100.0
     noise: Noise = Noise()
     distortion: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0, 0.0)  # k1 k2 p1 p2 k3
-    distortion_centre: tuple[float, float] = (0.5, 0.5)  # in parts of width and height
+    distortion_centre: tuple[float, float] = (0.5, 0.5)  # as fractions of width and height
     lens: Lens = Lens()  # used by wide-angle cameras only
     name: str = ""
     pose: Pose = IDENTITY  # in the sensor's frame

@@ -1,4 +1,4 @@
-"""Shapes of what is seen and touched; lengths in m."""
+"""Shapes of visuals and collisions; lengths in m."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from bullet_sim.pose import Vector3
 
 @dataclass(frozen=True)
 class Box:
-    """A cuboid about its middle."""
+    """A cuboid, centred."""
 
     size: Vector3  # full lengths
 
 
 @dataclass(frozen=True)
 class Cylinder:
-    """A round bar about its middle."""
+    """A cylinder, centred."""
 
     radius: float
     length: float  # along z, centred
@@ -25,22 +25,22 @@ class Cylinder:
 
 @dataclass(frozen=True)
 class Sphere:
-    """A ball about its middle."""
+    """A ball, centred."""
 
     radius: float
 
 
 @dataclass(frozen=True)
 class Plane:
-    """Flat ground without end."""
+    """An infinite plane."""
 
     normal: Vector3
-    size: tuple[float, float]  # what is drawn; a plane collides everywhere
+    size: tuple[float, float]  # the part that is drawn; a plane collides everywhere
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles from a file, or those of one part of it."""
+    """Triangles from a file, or from one part of it."""
 
     path: str  # absolute path of an existing file
     scale: Vector3 = (1.0, 1.0, 1.0)
@@ -50,7 +50,7 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Heightmap:
-    """Ground whose height is a grey image: white is `size[2]` above black; image up is +y."""
+    """Terrain with heights from a grey image: white is `size[2]` above black; image up is +y."""
 
     path: str | None  # absolute path of an existing image; None: flat
     size: Vector3 = (1.0, 1.0, 1.0)
@@ -60,7 +60,7 @@ class Heightmap:
 
 @dataclass(frozen=True)
 class TerrainLayer:
-    """How a heightmap looks from some height on."""
+    """The look of a heightmap from some height on."""
 
     material: Material
     tile: float = 10.0  # m that one image of the texture covers
@@ -69,7 +69,7 @@ class TerrainLayer:
 
 @dataclass(frozen=True)
 class Polyline:
-    """Outlines extruded from z = 0 up; what lies inside an odd number of them is solid."""
+    """Outlines extruded upwards from z = 0; points inside an odd number of them are solid."""
 
     outlines: tuple[tuple[tuple[float, float], ...], ...]  # closed, m
     height: float = 1.0
@@ -77,7 +77,7 @@ class Polyline:
 
 @dataclass(frozen=True)
 class ImageExtrusion:
-    """The dark parts of a picture as walls from z = 0 up; the picture's middle is the origin."""
+    """The dark parts of an image as walls from z = 0 up; the image's centre is the origin."""
 
     path: str  # absolute path of an existing image
     scale: float = 1.0  # m/px
@@ -87,11 +87,11 @@ class ImageExtrusion:
 
 @dataclass(frozen=True)
 class Strip:
-    """A band of ground along points, such as a road; it is only ever drawn."""
+    """A band of ground along points, such as a road; it is only drawn."""
 
     points: tuple[Vector3, ...]
     width: float = 1.0
 
 
-Generated = Heightmap | Polyline | ImageExtrusion | Strip  # triangles that we make ourselves
+Generated = Heightmap | Polyline | ImageExtrusion | Strip  # triangles that are made here
 Geometry = Box | Cylinder | Sphere | Plane | Mesh | Generated

@@ -1,4 +1,4 @@
-"""How things look and how they touch: colours, textures, contact parameters."""
+"""The look of surfaces and their contact: colours, textures, contact parameters."""
 
 from dataclasses import dataclass
 
@@ -34,5 +34,5 @@ class Surface:
     min_depth: float = 0.0
     max_vel: float = 0.01  # m/s
     restitution: float = 0.0
-    collide_bitmask: int = 0xFFFF  # two meet where they have a bit in common
+    collide_bitmask: int = 0xFFFF  # two collide if they have a bit in common
     collides: bool = True  # false: <collide_without_contact>

@@ -1,4 +1,4 @@
-"""Worlds: physics, place on Earth, scene and all that is in them from the start."""
+"""Worlds: physics, location on Earth, scene and everything in them at the start."""
 
 from dataclasses import dataclass
 
@@ -29,7 +29,7 @@ class PhysicsDescription:
 
 @dataclass(frozen=True)
 class SphericalDescription:
-    """`<spherical_coordinates>`: where on Earth the world's origin is."""
+    """`<spherical_coordinates>`: the location of the world's origin on Earth."""
 
     latitude_deg: float = 0.0
     longitude_deg: float = 0.0
@@ -39,7 +39,7 @@ class SphericalDescription:
 
 @dataclass(frozen=True)
 class WorldDescription:
-    """All that is there at the start; magnetic field in T, gravity in m/s^2."""
+    """The content of a world at the start; magnetic field in T, gravity in m/s^2."""
 
     name: str = "default"
     gravity: Vector3 = (0.0, 0.0, -9.8)
@@ -50,5 +50,5 @@ class WorldDescription:
     models: tuple[ModelDescription, ...] = ()
     lights: tuple[LightDescription, ...] = ()
     plugins: tuple[PluginDescription, ...] = ()
-    scenery: tuple[tuple[str, Visual], ...] = ()  # seen but not touched, such as roads
-    sim_time: float = 0.0  # s, at which a saved world goes on
+    scenery: tuple[tuple[str, Visual], ...] = ()  # visible without collisions, such as roads
+    sim_time: float = 0.0  # s, at which a saved world continues

@@ -1,1 +1,1 @@
-"""Drives: from a velocity command to joint motors, or the body itself, and odometry back."""
+"""Drives: from a velocity command to joint motors, or to the body itself, and odometry."""

@@ -8,14 +8,14 @@ from bullet_sim.joint import Joint
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.twist import add, dot, negative
 
-SETTLED = 0.01  # m/s: nearer to the target than this, the command jumps to it
+SETTLED = 0.01  # m/s: closer to the target than this, the command jumps to it
 
 
 @dataclass(frozen=True)
 class DiffDriveParameters:
     """Geometry and motors; defaults are those of gazebo_ros_diff_drive.cpp, Load.
 
-    As there, a negative separation reverses turns, and a negative diameter reverses all.
+    As there, a negative separation reverses turns, and a negative diameter reverses everything.
     """
 
     wheel_separation: float = 0.34  # m
@@ -40,7 +40,7 @@ class DiffDrive:
         self.stop()
 
     def command(self, forward: float, yaw_rate: float) -> None:
-        """Wanted speed (m/s) and rate of yaw (rad/s); held until the next command."""
+        """Set the wanted speed (m/s) and yaw rate (rad/s); held until the next command."""
         half = yaw_rate * self._parameters.wheel_separation / 2
         self._wanted = (forward - half, forward + half)
 
@@ -60,10 +60,10 @@ class DiffDrive:
 
 def turns_backwards(left: tuple[Joint, Pose], right: tuple[Joint, Pose],
                     parameters: DiffDriveParameters) -> bool:
-    """Whether a positive rate of yaw would turn to the right: "left" is the right wheel.
+    """Whether a positive yaw rate would turn right: "left" is the right wheel.
 
-    Each joint comes with the pose of its child link. A wheel that turns about an axis drives to
-    where that axis points to the left, so the left wheel lies further along it.
+    Each joint comes with the pose of its child link. A wheel that turns about an axis drives so
+    that the axis points to the left, so the left wheel is further along the axis.
     """
     across = add(left[1].position, negative(right[1].position))
     sense = math.copysign(1.0, parameters.wheel_separation * parameters.wheel_diameter)
@@ -77,7 +77,7 @@ def _axis(joint: Joint, link: Pose) -> tuple[float, float, float]:
 
 def ramp(now: tuple[float, float], wanted: tuple[float, float],
          step: float) -> tuple[float, float]:
-    """Rim speeds after one update. A step of 0, or one wheel already there, means at once."""
+    """Rim speeds after one update. If `step` is 0, or one wheel is there already, set at once."""
     gaps = [w - n for n, w in zip(now, wanted, strict=True)]
     if step <= 0 or min(abs(gap) for gap in gaps) < SETTLED:
         return wanted

@@ -1,4 +1,4 @@
-"""A model pushed over the plane: what it lacks in velocity, times a gain, is the force."""
+"""A model pushed in the plane: the force is the velocity error times a gain."""
 
 from dataclasses import dataclass
 
@@ -13,18 +13,18 @@ from bullet_sim.world import World
 
 @dataclass(frozen=True)
 class ForceGains:
-    """Of the velocity's error; defaults as in hector's gazebo_ros_force_based_move.cpp."""
+    """Gains of the velocity error; defaults as in hector's gazebo_ros_force_based_move.cpp."""
 
-    forward: float = 10000.0  # N for each m/s
-    leftward: float = 10000.0  # N for each m/s
-    yaw: float = 100.0  # N m for each rad/s
+    forward: float = 10000.0  # N per m/s
+    leftward: float = 10000.0  # N per m/s
+    yaw: float = 100.0  # N m per rad/s
 
 
 class ForceDrive:
-    """Call `update` at each step. The pushed link is the one whose centre of mass is pushed.
+    """Call `update` at each step. The link's centre of mass is pushed.
 
     F = gain * (wanted - measured), forward and leftward in the link's axes, and the same for a
-    torque about the world's vertical: the law of hector's force_based_move and of its copies.
+    torque about the world's vertical axis: as hector's force_based_move and its copies.
     """
 
     def __init__(self, world: World, link: Link, gains: ForceGains, timeout: float):
@@ -34,7 +34,7 @@ class ForceDrive:
         self.reset()
 
     def command(self, forward: float, leftward: float, yaw_rate: float) -> None:
-        """Wanted speeds (m/s) in the model's heading and rate of yaw (rad/s)."""
+        """Set the wanted speeds (m/s) in the model's heading and the yaw rate (rad/s)."""
         self._wanted = (forward, leftward, yaw_rate)
         self._commanded = self._world.time
 
@@ -47,7 +47,7 @@ class ForceDrive:
         self._counted = self._world.time
 
     def update(self) -> None:
-        """Count the way of the last step, then push."""
+        """Update the odometry with the last step, then push."""
         time = self._world.time
         elapsed, self._counted = time - self._counted, time
         if time - self._commanded > self._timeout:
@@ -59,7 +59,7 @@ class ForceDrive:
         turning = model.twist.angular[2]
         if not any(self._wanted) and abs(turning) < REST_RATE and max(
                 map(abs, own.linear)) < REST_SPEED:
-            return  # so that a world in which nothing moves can come to rest
+            return  # so that a world where nothing moves can come to rest
         g = self._gains
         push = (g.forward * (self._wanted[0] - forward), g.leftward * (self._wanted[1] - leftward),
                 0.0)
@@ -67,5 +67,5 @@ class ForceDrive:
                                (0.0, 0.0, g.yaw * (self._wanted[2] - turning)))
 
     def odometry(self) -> OdometryReading:
-        """What was moved, counted from where it was spawned."""
+        """The motion since it was spawned."""
         return self._odometry.sample()

@@ -1,4 +1,4 @@
-"""Kobuki's base: two wheels with a time-out, odometry from wheels and gyroscope."""
+"""Kobuki's base: two wheels with a command time-out, odometry from wheels and gyroscope."""
 
 import math
 
@@ -11,7 +11,7 @@ from bullet_sim.world import World
 
 
 class Kobuki:
-    """`update` at every step. As the real base does, it takes the turn from the gyroscope."""
+    """Call `update` at every step. Like the real base, it takes the turn from the gyroscope."""
 
     def __init__(self, world: World, left: Joint, right: Joint, imu: ImuSensor, torque: float,
                  wheel_separation: float, wheel_diameter: float, timeout: float):
@@ -29,17 +29,17 @@ class Kobuki:
         self.reset()
 
     def command(self, forward: float, yaw_rate: float) -> None:
-        """Wanted speed (m/s) and rate of yaw (rad/s), until the time-out."""
+        """Set the wanted speed (m/s) and yaw rate (rad/s), until the time-out."""
         half = yaw_rate * self._separation / 2
         self._speeds = (forward - half, forward + half)
         self._commanded = self._world.time
 
     def switch(self, on: bool) -> None:
-        """Motors on or off; without power the wheels are held still."""
+        """Switch the motors on or off; without power the wheels are held still."""
         self._powered = on
 
     def reset(self) -> None:
-        """As just switched on."""
+        """Reset to the state after switching on."""
         self._speeds = (0.0, 0.0)
         self._commanded = self._updated = self._world.time
         self._powered = True
@@ -49,11 +49,11 @@ class Kobuki:
         self.reset_odometry()
 
     def reset_odometry(self) -> None:
-        """Here and now is the origin."""
+        """Make the current pose the odometry's origin."""
         self._x = self._y = self._yaw = 0.0
 
     def update(self) -> None:
-        """Count the way of the last step, then drive."""
+        """Update the odometry with the last step, then drive."""
         time = self._world.time
         elapsed, self._updated = time - self._updated, time
         self._reading = self._imu.sample()
@@ -68,7 +68,7 @@ class Kobuki:
             joint.drive_velocity(speed / self._radius, self._torque)
 
     def odometry(self) -> OdometryReading:
-        """The present estimate."""
+        """The current estimate."""
         pose = Pose((self._x, self._y, 0.0), quaternion_from_rpy(0.0, 0.0, self._yaw))
         return OdometryReading(self._updated, pose, self._forward, 0.0,
                                self.imu_reading().angular_velocity[2])

@@ -1,4 +1,4 @@
-"""A model that is moved over the plane as a whole, without wheels that would have to do it."""
+"""A model that is moved in the plane as a whole, without wheels."""
 
 import math
 
@@ -11,14 +11,14 @@ from bullet_sim.world import World
 
 
 class PlanarDrive:
-    """Call `update` at every step: between two calls the model falls and collides as anything."""
+    """Call `update` at every step: between two calls the model falls and collides normally."""
 
     def __init__(self, model: Model):
         self._model = model
         self.stop()
 
     def command(self, forward: float, leftward: float, yaw_rate: float) -> None:
-        """Wanted speeds (m/s) in the model's heading and rate of yaw (rad/s)."""
+        """Set the wanted speeds (m/s) in the model's heading and the yaw rate (rad/s)."""
         self._wanted = (forward, leftward, yaw_rate)
 
     def stop(self) -> None:
@@ -28,7 +28,7 @@ class PlanarDrive:
     def update(self) -> None:
         """Give the model the wanted velocity; none upwards (gazebo_ros_planar_move.cpp)."""
         if not any(self._wanted) and self._still():
-            return  # so that a world in which nothing moves can come to rest
+            return  # so that a world where nothing moves can come to rest
         forward, leftward, yaw_rate = self._wanted
         yaw = self._model.pose.rpy()[2]
         cos, sin = math.cos(yaw), math.sin(yaw)
@@ -43,18 +43,18 @@ class PlanarDrive:
 
 
 class PlanarOdometry:
-    """The model frame in the world; speeds from how far it came since the last sample."""
+    """The model frame in the world; speeds from the distance since the last sample."""
 
     def __init__(self, world: World, model: Model):
         self._world, self._model = world, model
         self.restart()
 
     def restart(self) -> None:
-        """Forget where it was."""
+        """Forget the last pose."""
         self._time, self._pose = self._world.time, self._model.pose
 
     def sample(self) -> OdometryReading:
-        """Where it is now."""
+        """The current pose and speeds."""
         time, pose = self._world.time, self._model.pose
         elapsed, before = time - self._time, self._pose
         self._time, self._pose = time, pose

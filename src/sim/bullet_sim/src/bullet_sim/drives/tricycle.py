@@ -7,7 +7,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.joint import Joint
 
 GREATEST_ANGLE = math.pi / 2  # rad, of the steering
-PLACED = 1e-4  # rad: a joint this near to its angle is not reset again
+PLACED = 1e-4  # rad: a joint closer to its angle than this is not reset again
 
 
 @dataclass(frozen=True)
@@ -18,9 +18,9 @@ class TricycleParameters:
     torque: float = 5.0  # N m, of the driven wheel and the steering
     acceleration: float = 0.0  # rad/s^2 of the wheel; 0: immediate
     deceleration: float = 0.0  # rad/s^2 of the wheel
-    speed_tolerance: float = 0.01  # rad/s: nearer to the target than this, the command jumps to it
+    speed_tolerance: float = 0.01  # rad/s: closer to the target than this, the command jumps to it
     steering_speed: float = 0.0  # rad/s; 0: the joint is reset to its angle
-    angle_tolerance: float = 0.01  # rad: nearer to the target than this, the steering stops
+    angle_tolerance: float = 0.01  # rad: closer to the target than this, the steering stops
 
 
 class Tricycle:
@@ -38,7 +38,7 @@ class Tricycle:
         self.stop()
 
     def command(self, speed: float, angle: float) -> None:
-        """Rim speed of the driven wheel (m/s) and steering angle (rad)."""
+        """Set the rim speed of the driven wheel (m/s) and the steering angle (rad)."""
         self._rate = speed / (self._parameters.wheel_diameter / 2)
         self._angle = max(-GREATEST_ANGLE, min(GREATEST_ANGLE, angle))
 

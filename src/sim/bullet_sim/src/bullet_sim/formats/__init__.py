@@ -11,7 +11,7 @@ __all__ = ["Resources", "load_light", "load_model", "load_world"]
 
 
 def __getattr__(name: str):
-    # Imported at first use: the xacro command needs none of it, and NumPy's import is slow.
+    # Imported at first use: the xacro command does not need it, and importing NumPy is slow.
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     home = "resources" if name == "Resources" else "loading"

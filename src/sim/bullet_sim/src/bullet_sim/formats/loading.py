@@ -1,4 +1,4 @@
-"""Reads a model, light or world from its text: URDF or SDF, by the root element."""
+"""Reads a model, light or world from text: URDF or SDF, by the root element."""
 
 import re
 from dataclasses import replace
@@ -28,9 +28,9 @@ PACKAGE_URI = re.compile(r"package://([^/\\\s\"'<>]+)")
 
 
 def load_model(text: str, resources: Resources, name: str | None = None) -> ModelDescription:
-    """The model of a URDF or SDF text; `name` replaces the one in the text.
+    """The model in a URDF or SDF text; `name` replaces the one in the text.
 
-    FormatError for a text that is neither, and for what is wrong in it beyond repair.
+    FormatError for a text that is neither, and for errors in it that cannot be skipped.
     """
     root = _parse_model(text)
     named = root
@@ -48,7 +48,7 @@ def load_model(text: str, resources: Resources, name: str | None = None) -> Mode
 
 
 def load_light(text: str, resources: Resources, name: str | None = None) -> LightDescription | None:
-    """The light of an SDF text whose root's first child is one; None for other texts.
+    """The light in an SDF text whose root's first child is one; None for other texts.
 
     FormatError for a text that is not XML.
     """
@@ -63,8 +63,8 @@ def load_light(text: str, resources: Resources, name: str | None = None) -> Ligh
 def load_world(path: Path | str, resources: Resources) -> WorldDescription:
     """The first world of a file; `Resources.find_world` finds the file.
 
-    FormatError where the file is no XML or has no `<world>`; all else that is wrong in it is an
-    error line, and the rest is read. ResourceNotFound without the file.
+    FormatError if the file is not XML or has no `<world>`; any other error in it is an error line,
+    and the rest is read. ResourceNotFound if there is no file.
     """
     path = Path(path)
     if not path.is_file():
@@ -87,7 +87,7 @@ def _parse_model(text: str) -> Element:
 
 
 def _put_in_package_folders(root: Element, resources: Resources) -> None:
-    """`package://NAME` becomes the package's folder, as the URDF spawn service does it."""
+    """Replace `package://NAME` by the package's folder, as the URDF spawn service does."""
     def folder(match: re.Match) -> str:
         try:
             return str(resources.package_folder(match[1]))
@@ -112,19 +112,19 @@ def _read_root(root: Element, source: Source) -> ModelDescription:
     model = _model_of(root)
     if model is not None:
         return read_model(model, source)
-    # what spawn_model -database sends: a world that only includes the model
+    # sent by spawn_model -database: a world that only includes the model
     include = root.find("world/include")
     if include is None:
         raise FormatError(f"no <model> in the <{root.tag}> text")
     found = read_include(include, source)
     if not isinstance(found, ModelDescription):
         uri = (include.findtext("uri") or "").strip()
-        raise FormatError(f"<include> of {uri!r} brings in no model")
-    # The service writes a <pose> into the include, and that takes the place of the model's own.
+        raise FormatError(f"<include> of {uri!r} contains no model")
+    # The service writes a <pose> into the include, which replaces the model's own.
     return found if include.find("pose") is not None else replace(found, pose=IDENTITY)
 
 
 def _model_of(root: Element) -> Element | None:
-    """The one model of an SDF text."""
+    """The only model of an SDF text."""
     model = root.find("model")
     return root.find("world/model") if model is None else model

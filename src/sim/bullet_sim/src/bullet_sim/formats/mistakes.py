@@ -1,4 +1,4 @@
-"""Says what is wrong in a text and reads on without it; so many times at most."""
+"""Reports errors in a text while reading continues without the faulty part; limits their number."""
 
 import logging
 from collections.abc import Callable, Iterator
@@ -11,14 +11,14 @@ from bullet_sim.errors import SimulationError, shortened
 
 logger = logging.getLogger(__name__)
 
-MOST_LINES = 20  # of one world or robot with all that it includes
+MOST_LINES = 20  # for one world or robot with everything that it includes
 LONGEST_LINE = 500  # characters
 Read = TypeVar("Read")
 
 
 @dataclass
 class _Report:
-    """Of one load: the lines, without those that came again, and the files being read."""
+    """Of one load: the lines, without repeated ones, and the files being read."""
 
     lines: set[str] = field(default_factory=set)
     files: list[str] = field(default_factory=list)
@@ -29,9 +29,9 @@ _report: ContextVar[_Report | None] = ContextVar("report", default=None)
 
 @contextmanager
 def reading(file: str = "") -> Iterator[None]:
-    """Around the reading of a text, or of a `file` within it, which then begins each line.
+    """Use around reading a text, or a `file` within it, whose name then begins each line.
 
-    The outermost one counts the lines, and ends with how many more there would have been.
+    The outermost one counts the lines, and reports at the end how many more there were.
     """
     outer = _report.get()
     report = outer or _Report()
@@ -48,7 +48,7 @@ def reading(file: str = "") -> Iterator[None]:
 
 
 def mistake(message: object) -> None:
-    """One error line, once per load."""
+    """Log an error line, once per load."""
     report = _report.get() or _Report()
     file = report.files[-1] if report.files else ""
     line = f"{file}: {message}" if file else str(message)
@@ -60,12 +60,12 @@ def mistake(message: object) -> None:
 
 
 def instead(error: SimulationError, used: object) -> None:
-    """The error line for a value in whose place another one, as text, is `used`."""
+    """Log the error of a value for which another one, as text, is `used`."""
     mistake(f"{error}; {used} is used instead")
 
 
 def or_without(read: Callable[..., Read], *arguments: object) -> Read | None:
-    """What `read` makes of the arguments; None, with an error line, where it cannot."""
+    """The result of `read` with the arguments; None, with an error line, if it fails."""
     try:
         return read(*arguments)
     except SimulationError as error:
@@ -74,6 +74,6 @@ def or_without(read: Callable[..., Read], *arguments: object) -> Read | None:
 
 
 def all_that_can(read: Callable[..., Read | None], elements: list, *others: object) -> list[Read]:
-    """What `read` makes of each of the elements, without those of which it makes nothing."""
+    """The results of `read` for each of the elements, without those that fail or give None."""
     found = (or_without(read, element, *others) for element in elements)
     return [one for one in found if one is not None]

@@ -1,4 +1,4 @@
-"""Parses the part of OGRE's material scripts that Gazebo models use: first pass, first texture."""
+"""Parses the part of OGRE's material scripts used by Gazebo models: first pass, first texture."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -8,24 +8,24 @@ from types import MappingProxyType
 from bullet_sim.description import Material, Rgba
 from bullet_sim.errors import FormatError
 
-# A comment without an end is the rest of the file: else each /* in it would be tried again.
+# An unclosed comment is the rest of the file: otherwise each /* in it would be tried again.
 COMMENT = re.compile(r"//[^\n]*|/\*(?:.*?\*/|.*\Z)", re.DOTALL)
 WORD = re.compile(r'"([^"]*)"|(\S+)')
-SECTIONS = ("technique", "pass", "texture_unit")  # of each, only the first counts
+SECTIONS = ("technique", "pass", "texture_unit")  # only the first of each counts
 
 
 @dataclass
 class ScriptMaterial:
-    """A material as written: keyword -> its arguments."""
+    """A material as written: its arguments by keyword."""
 
     name: str
     parent: str | None = None
-    imports: tuple[str, ...] = ()  # names of the scripts that its script imports from
+    imports: tuple[str, ...] = ()  # names of the scripts from which its script imports
     values: dict[str, list[str]] = field(default_factory=dict)
 
 
 def parse_script(text: str) -> dict[str, ScriptMaterial]:
-    """All materials of a script by name. FormatError for braces that do not match."""
+    """All materials of a script by name. FormatError for unbalanced braces."""
     statements = _statements(text)
     materials: dict[str, ScriptMaterial] = {}
     imports: list[str] = []
@@ -50,9 +50,9 @@ def to_material(
     find_texture: Callable[[str], str | None],
     ready: Mapping[str, Material] = MappingProxyType({}),
 ) -> Material:
-    """The description of a parsed material, with what it inherits, at last from one of `ready`.
+    """The description of a parsed material, with what it inherits, lastly from one of `ready`.
 
-    FormatError for an unknown parent and for numbers that are none.
+    FormatError for an unknown parent and for invalid numbers.
     """
     values, oldest = _inherited(name, materials)
     shown = ready.get(oldest or "", Material())
@@ -73,7 +73,7 @@ def to_material(
 
 
 def _texture_name(values: dict[str, list[str]]) -> str | None:
-    """Name of the image; a material that inherits may replace it by its alias."""
+    """Name of the image; a material that inherits may replace it by an alias."""
     alias, substitute = values.get("texture_alias"), values.get("set_texture_alias", [])
     if len(substitute) > 1 and (alias is None or alias[0] == substitute[0]):
         return substitute[1]
@@ -81,7 +81,7 @@ def _texture_name(values: dict[str, list[str]]) -> str | None:
 
 
 def _statements(text: str) -> Iterator[list[str]]:
-    """Lines as words; a brace is a statement of its own."""
+    """Lines as lists of words; a brace is a statement by itself."""
     spread = re.sub(r"([{}])", r"\n\1\n", COMMENT.sub("", text))
     for line in spread.splitlines():
         words = [quoted or bare for quoted, bare in WORD.findall(line)]
@@ -95,7 +95,7 @@ def _header(words: list[str]) -> ScriptMaterial:
 
 
 def _read_block(statements: Iterator[list[str]], material: ScriptMaterial, seen: set[str]) -> None:
-    """Statements up to the closing brace; `seen` holds the kinds of section already read."""
+    """Read statements up to the closing brace; `seen` holds the kinds of section already read."""
     pending: list[str] | None = None
     for words in statements:
         if words == ["}"]:
@@ -131,7 +131,7 @@ def _skip_block(statements: Iterator[list[str]]) -> None:
 def _inherited(
     name: str, materials: dict[str, ScriptMaterial]
 ) -> tuple[dict[str, list[str]], str | None]:
-    """Keywords with what ancestors say, and the name of the oldest ancestor, not in `materials`."""
+    """Keywords with those of all ancestors, and the oldest one's parent, not in `materials`."""
     chain: list[str] = []
     current: str | None = name
     while current in materials and current not in chain:
@@ -151,7 +151,7 @@ def _colour(name: str, keyword: str, values: dict[str, list[str]], default: Rgba
 
 
 def _specular(name: str, words: list[str] | None, shown: Material) -> tuple[Rgba, float]:
-    """OGRE writes the shininess as the last number, after three or four of colour."""
+    """Colour and shininess; OGRE writes the latter as the last number, after a colour of 3 or 4."""
     if words is None or "vertexcolour" in words:
         return shown.specular, shown.shininess
     if len(words) < 4:

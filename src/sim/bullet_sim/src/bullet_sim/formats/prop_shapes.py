@@ -1,7 +1,7 @@
-"""Shapes for meshes of Gazebo's own models, which saved worlds name and which are not here.
+"""Shapes in place of meshes of Gazebo's own models, which saved worlds name but are not here.
 
-Gazebo's window saves a model with its meshes, not as an `<include>`. Our model of the same name is
-made of plain shapes, and they are taken for the mesh, as much larger as it is scaled.
+Gazebo's client saves a model with its meshes, not as an `<include>`. Our model of the same name is
+made of plain shapes, which replace the mesh, scaled in the same way.
 """
 
 import functools
@@ -35,14 +35,14 @@ ONES = (1.0, 1.0, 1.0)
 def read_parts(
     read: Reader, element: Element, source: Source, link: str, name: str
 ) -> list[Part]:
-    """What `read` makes of a `<visual>` or `<collision>`: mostly one part, at times none.
+    """The results of `read` for a `<visual>` or `<collision>`: usually one part, sometimes none.
 
-    `link` is how errors call the link, `name` is its own.
+    `link` is the link in error messages, `name` its name.
 
-    A missing mesh of a model that we have is that model's own visuals, or collisions. They keep
-    their colours; what else is written of the part holds for all of them.
+    A missing mesh of a model that we have is replaced by that model's visuals, or collisions.
+    They keep their colours; everything else written for the part applies to all of them.
 
-    FormatError of a shape that cannot be.
+    FormatError for an impossible shape.
     """
     file = _prop_of(element, source)
     if file is None:
@@ -84,8 +84,8 @@ def _prop_of(element: Element, source: Source) -> Path | None:
 
 
 def _parts_of(file: Path, written: Element, name: str) -> Iterator[Element]:
-    """The parts of the model's link of that `name`, or of its first, with all that is written of
-    the mesh's; their poses are those in that link."""
+    """The parts of the model's link with that `name`, or of its first link, with everything that is
+    written for the mesh; their poses are in that link."""
     links = read_xml_file(file).findall("model/link")
     link = next((link for link in links if link.get("name") == name), links[0])
     for part in link.findall(written.tag):
@@ -97,20 +97,20 @@ def _parts_of(file: Path, written: Element, name: str) -> Iterator[Element]:
 
 FILE = DATA_FOLDER / "prop_meshes.toml"
 AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-COUNTS = {"scale": (3,), "at": (3, 6)}  # numbers of each key
+COUNTS = {"scale": (3,), "at": (3, 6)}  # allowed counts of numbers by key
 
 
 @dataclass(frozen=True)
 class PropMesh:
-    """What a model's own file writes of its mesh."""
+    """How the mesh is placed in the model's own file."""
 
-    scale: Vector3 = (1.0, 1.0, 1.0)  # with which it is as large as our shapes
+    scale: Vector3 = (1.0, 1.0, 1.0)  # the scale at which the mesh is as large as our shapes
     at: Pose = IDENTITY  # its origin in the link of our shapes
 
     def placed(self, scale: Vector3, part: Pose, shape: Geometry) -> tuple[Pose, Geometry]:
-        """A part of ours as that of the mesh at another `<scale>`: pose from the mesh's origin.
+        """Pose from the mesh's origin, and shape, of one of our parts for a mesh with `<scale>`.
 
-        `part` is its pose in our link.
+        `part` is the part's pose in our link.
         """
         factors = tuple(new / own for new, own in zip(scale, self.scale, strict=True))
         pose = self.at.inverse() * part
@@ -125,7 +125,7 @@ def _mirrored(pose: Pose, factors: Vector3) -> Pose:
 
 
 def _along(pose: Pose, factors: Vector3) -> Vector3:
-    """How much longer each axis of a part becomes when the mesh is scaled along its own."""
+    """Scale factors along the axes of a part when the mesh is scaled along its own axes."""
     return tuple(
         sum((factor * value) ** 2 for factor, value in
             zip(factors, rotate(pose.orientation, axis), strict=True)) ** 0.5
@@ -133,13 +133,13 @@ def _along(pose: Pose, factors: Vector3) -> Vector3:
 
 
 def prop_mesh(folder: str) -> PropMesh:
-    """That of a folder of data/models. FormatError if our own table is wrong."""
+    """The one of a folder of data/models. FormatError if our own table is wrong."""
     return read_prop_meshes(FILE).get(folder, PropMesh())
 
 
 @functools.cache
 def read_prop_meshes(file: Path) -> dict[str, PropMesh]:
-    """The file's tables. FormatError for an unknown key, a wrong count, a scale of 0."""
+    """The file's tables. FormatError for an unknown key, a wrong count or a scale of 0."""
     tables = tomllib.loads(file.read_text(encoding="utf-8"))
     return {name: _mesh(f"{file}: [{name}]", table) for name, table in tables.items()}
 

@@ -1,4 +1,4 @@
-"""Finds the files behind `model://`, `package://`, `file://` and plain names."""
+"""Finds the files for `model://`, `package://`, `file://` and plain names."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FindPackage = Callable[[str], str]
 
 
 class Resources:
-    """Search paths of one simulator. `find_package` gives a package's folder or raises."""
+    """Search paths of a simulator. `find_package` returns a package's folder or raises."""
 
     def __init__(
         self,
@@ -36,7 +36,7 @@ class Resources:
         extra_resource_paths: Iterable[str | Path] = (),
         find_package: FindPackage | None = None,
     ) -> Resources:
-        """home, our own folders, the environment's, then what packages export.
+        """Home, our own folders, the environment's, then those exported by packages.
 
         The variables are those of Gazebo's SystemPaths.cc.
         """
@@ -49,9 +49,9 @@ class Resources:
         )
 
     def resolve(self, uri: str, base: Path | None = None) -> Path:
-        """The existing file or folder behind a URI; `base` is the folder of the text it is in.
+        """The existing file or folder for a URI; `base` is the folder of the text that contains it.
 
-        What is not there as written is sought with `%20` and the like as letters, `\\` as `/`.
+        If it does not exist as written, it is searched for with `%20` etc. decoded and `\\` as `/`.
         ResourceNotFound names the searched folders.
         """
         written = uri.strip()
@@ -81,9 +81,9 @@ class Resources:
         raise ResourceNotFound(uri, ["nowhere. Unknown URI prefix; known: model package file"])
 
     def find_world(self, name: str) -> Path:
-        """A world file: as given, else below the resource paths.
+        """A world file: as given, else under the resource paths.
 
-        ResourceNotFound lists those that there are.
+        ResourceNotFound lists the available ones.
         """
         try:
             return self._first(name, self._plain_candidates(name, Path.cwd()))
@@ -93,12 +93,12 @@ class Resources:
             raise ResourceNotFound(name, error.searched, sorted(there)) from None
 
     def package_folder(self, package: str) -> Path:
-        """Folder of a ROS package. ResourceNotFound if the package finder has none."""
+        """Folder of a ROS package. ResourceNotFound if the package finder does not find it."""
         if self._find_package is None:
             raise ResourceNotFound(f"package {package}", ["no package finder was given"])
         try:
             found = self._find_package(package)
-        except Exception as error:  # a finder brings its own kinds of error with it
+        except Exception as error:  # a finder may raise exceptions of its own
             raise ResourceNotFound(f"package {package}", [str(error)]) from error
         if not found:
             raise ResourceNotFound(f"package {package}", ["the package path"])
@@ -119,7 +119,7 @@ class Resources:
     @staticmethod
     def _first(uri: str, candidates: list[Path]) -> Path:
         for candidate in candidates:
-            if os.path.exists(candidate):  # Path's own raises where a name is too long
+            if os.path.exists(candidate):  # Path.exists raises for a name that is too long
                 return Path(os.path.abspath(candidate))
         raise ResourceNotFound(uri, dict.fromkeys(str(path.parent) for path in candidates))
 

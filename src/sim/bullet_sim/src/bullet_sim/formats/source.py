@@ -1,4 +1,4 @@
-"""The source of a text that is being read, and which warnings were already given."""
+"""The source of a text that is being read, and the warnings already logged."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ NEWEST_SDF = (1, 7)
 
 @dataclass(frozen=True)
 class Source:
-    """One text with its SDF version; all that it includes shares `warned` and `scripts`."""
+    """One text with its SDF version; everything that it includes shares `warned` and `scripts`."""
 
     resources: Resources
-    # Of a file that an <include> names, SDF or URDF; the reader of URDF itself uses those of SDF.
+    # Reads a file named by an <include>, SDF or URDF; the URDF reader itself uses the SDF reader.
     read_root: Callable[[Element, Source], ModelDescription] | None = None
     version: tuple[int, int] = NEWEST_SDF
     folder: Path | None = None  # of the text's file
@@ -32,14 +32,14 @@ class Source:
     files: list[Path] = field(default_factory=list)  # all that were included
 
     def warn_once(self, message: str, about: str = "") -> None:
-        """A warning that is given once per load, or once `about` a thing met in several places."""
+        """Log a warning once per load; with `about`, once for all that have the same one."""
         key = about or message
         if key not in self.warned:
             self.warned.add(key)
             logger.warning("%s", shortened(message))
 
     def of_root(self, root: Element) -> Source:
-        """This source with the version that an `<sdf>` or `<gazebo>` root states."""
+        """This source with the version given by an `<sdf>` or `<gazebo>` root."""
         return replace(self, version=sdf_version(root.get("version", "")))
 
     def entering(self, file: Path) -> Source:
@@ -48,7 +48,7 @@ class Source:
 
 
 def sdf_version(text: str) -> tuple[int, int]:
-    """`1.6` as (1, 6); the newest where nothing readable is written."""
+    """`1.6` as (1, 6); the newest if nothing readable is written."""
     major, _, minor = text.strip().partition(".")
     try:
         return (int(major), int(minor or 0))

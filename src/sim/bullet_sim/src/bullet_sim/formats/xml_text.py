@@ -1,4 +1,4 @@
-"""From bytes to XML elements, with bounds on size, depth and number, so that no text is a bomb."""
+"""From bytes to XML elements, with limits of size, depth and number against XML bombs."""
 
 import re
 import sys
@@ -10,11 +10,11 @@ from xml.parsers import expat
 from bullet_sim.errors import FormatError
 from bullet_sim.files import check_file
 
-LARGEST_TEXT = 32 * 2**20  # bytes; elements of it take about ten times that of memory
+LARGEST_TEXT = 32 * 2**20  # bytes; its elements take about ten times as much memory
 MOST_ELEMENTS = 300_000
-DEEPEST = 200  # levels; reading nested models takes a few of Python's own for each
+DEEPEST = 200  # levels; reading nested models takes a few Python calls per level
 DECLARED = re.compile(rb"""<\?xml[^>]*\bencoding\s*=\s*["']([\w.-]+)["']""")
-# Its version is ignored: robots of PyBullet's own have 0.0, which Expat 2.9 refuses.
+# Its version is ignored: PyBullet's own robots have 0.0, which Expat 2.9 rejects.
 DECLARATION = re.compile(r"<\?xml\s[^<>]*\?>")
 BYTE_ORDER_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
@@ -29,7 +29,7 @@ def parse_xml(text: str, what: str = "XML") -> Element:
     stripped = text.lstrip("\ufeff \t\r\n")
     skipped_lines = text[:len(text) - len(stripped)].count("\n")
     if declaration := DECLARATION.match(stripped):
-        blank = re.sub(r"[^\n]", " ", declaration[0])  # places in error messages stay
+        blank = re.sub(r"[^\n]", " ", declaration[0])  # positions in error messages stay
         stripped = blank + stripped[declaration.end():]
     parser = expat.ParserCreate("utf-8")
     builder = _BoundedBuilder(parser, what, skipped_lines)
@@ -48,12 +48,12 @@ def parse_xml(text: str, what: str = "XML") -> Element:
 
 
 def read_xml_file(path: Path) -> Element:
-    """Root element of a file; FormatError where it cannot be read."""
+    """Root element of a file; FormatError if it cannot be read."""
     return parse_xml(decoded(read_bytes(path)), str(path))
 
 
 def read_bytes(path: Path) -> bytes:
-    """A file's content; FormatError where it cannot be read, or is too large for one text."""
+    """A file's content; FormatError if it cannot be read, or is too large for one text."""
     try:
         size = check_file(path, sys.maxsize).st_size
         if size > LARGEST_TEXT:
@@ -64,7 +64,7 @@ def read_bytes(path: Path) -> bytes:
 
 
 def decoded(content: bytes) -> str:
-    """Text by its byte order mark or XML declaration, else UTF-8; unknown letters are replaced."""
+    """Text by its byte order mark or XML declaration, else UTF-8; invalid bytes are replaced."""
     for mark, encoding in BYTE_ORDER_MARKS.items():
         if content.startswith(mark):
             return content.decode(encoding, errors="replace")
@@ -73,12 +73,12 @@ def decoded(content: bytes) -> str:
         try:
             return content.decode(declared[1].decode("ascii"))
         except (LookupError, UnicodeError):
-            pass  # a copied declaration need not be that of this file
+            pass  # a copied declaration may be wrong for this file
     return content.decode("utf-8", errors="replace")
 
 
 class _BoundedBuilder(TreeBuilder):
-    """Builds the tree until a bound is passed."""
+    """Builds the tree until a limit is exceeded."""
 
     def __init__(self, parser: expat.XMLParserType, what: str, skipped_lines: int):
         super().__init__()
@@ -102,7 +102,7 @@ class _BoundedBuilder(TreeBuilder):
         return super().end(tag)
 
     def refuse_entity(self, name: str, *_details: object) -> None:
-        """Entities of one's own can grow without bound or read other files."""
+        """Entities defined in a file can grow without limit or read other files."""
         self._refuse(f"the entity {name!r} is declared, which is not supported; "
                      "write its text where it is used")
 

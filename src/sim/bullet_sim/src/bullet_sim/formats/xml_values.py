@@ -1,7 +1,7 @@
-"""Numbers, vectors, colours and poses out of XML elements, with errors that say where.
+"""Numbers, vectors, colours and poses from XML elements, with errors that say where.
 
-The readers that take a default give one error line and the default for what cannot be read, as in
-sdformat's Param.cc, SetFromString; the checks that do not (`numbers`, `not_negative`, `bounded`)
+The readers with a default log one error line and return the default for unreadable values, as in
+sdformat's Param.cc, SetFromString; the checks without one (`numbers`, `not_negative`, `bounded`)
 raise FormatError.
 """
 
@@ -25,14 +25,14 @@ __all__ = [
 
 TRUE_WORDS = ("true", "1")
 # Lengths, masses and poses beyond this are mistakes, and their squares overflow.
-# (Limits of joints may be larger: saved files write the largest number there is.)
+# (Limits of joints may be larger: saved files contain the largest number there is.)
 LARGEST = 1e12
 LONGEST_QUOTE = 80  # characters
 Value = TypeVar("Value")
 
 
 def numbers(text: str, count: int, where: str) -> tuple[float, ...]:
-    """`count` finite numbers parted by any white space. FormatError for anything else."""
+    """`count` finite numbers separated by white space. FormatError for anything else."""
     words = text.split()
     try:
         values = tuple(float(word) for word in words)
@@ -52,7 +52,7 @@ def _quoted(text: str) -> str:
 
 
 def not_negative(values: Sequence[float], where: str) -> Sequence[float]:
-    """The same numbers; FormatError names the first below zero or beyond `LARGEST`."""
+    """The same numbers; FormatError names the first that is negative or beyond `LARGEST`."""
     for value in values:
         if value < 0.0:
             raise FormatError(f"{where}: {value:g} is negative")
@@ -60,7 +60,7 @@ def not_negative(values: Sequence[float], where: str) -> Sequence[float]:
 
 
 def bounded(values: Sequence[float], where: str) -> Sequence[float]:
-    """The same numbers; FormatError names the first whose size is beyond `LARGEST`."""
+    """The same numbers; FormatError names the first whose absolute value is beyond `LARGEST`."""
     for value in values:
         if abs(value) > LARGEST:
             raise FormatError(f"{where}: {value:g} is too large; at most {LARGEST:g} is possible")
@@ -68,12 +68,12 @@ def bounded(values: Sequence[float], where: str) -> Sequence[float]:
 
 
 def child_text(parent: Element, path: str, default: str = "") -> str:
-    """Trimmed text of the first element at `path`; the default where it is absent or blank."""
+    """Stripped text of the first element at `path`; the default if it is absent or blank."""
     return (parent.findtext(path) or "").strip() or default
 
 
 def or_default(read: Callable[[], Value], default: Value) -> Value:
-    """What `read` gives; the default, with an error line, where it raises FormatError."""
+    """The result of `read`; the default, with an error line, if it raises FormatError."""
     try:
         return read()
     except FormatError as error:
@@ -82,9 +82,9 @@ def or_default(read: Callable[[], Value], default: Value) -> Value:
 
 
 def one_of(known: Collection[str], kind: str, written: str, usual: str, where: str) -> str:
-    """The written word; the usual one, with an error line, where it is not known.
+    """The written word; the usual one, with an error line, if it is unknown.
 
-    `kind` says of what the words are names.
+    `kind` says what the words are names of.
     """
     if written in known:
         return written
@@ -94,7 +94,7 @@ def one_of(known: Collection[str], kind: str, written: str, usual: str, where: s
 
 
 def shown(value: float | Sequence[float] | Pose | str) -> str:
-    """A value as a file would have it, for an error line."""
+    """A value as written in a file, for an error line."""
     match value:
         case str():
             return repr(value)
@@ -122,22 +122,22 @@ def number(parent: Element, path: str, default: float, where: str) -> float:
 
 
 def amount(parent: Element, path: str, default: float, where: str) -> float:
-    """One number at `path` that is not below zero."""
+    """One number at `path` that is not negative."""
     return _number(parent, path, default, where, not_negative)
 
 
 def length(parent: Element, path: str, default: float, where: str) -> float:
-    """As `amount`, for a shape: of a length that cannot be FormatError, and no other shape."""
+    """As `amount`, for shapes: a negative length is a FormatError, not replaced by the default."""
     return not_negative([number(parent, path, default, where)], f"{where} <{path}>")[0]
 
 
 def size(parent: Element, path: str, default: float, where: str) -> float:
-    """One number at `path` that is not beyond `LARGEST`, of either sign."""
+    """One number at `path`, of either sign, that is not beyond `LARGEST`."""
     return _number(parent, path, default, where, bounded)
 
 
 def integer(parent: Element, path: str, default: int, where: str) -> int:
-    """One whole number at `path`; `8.0` counts as 8, as saved files write it."""
+    """One integer at `path`; `8.0` counts as 8, as in saved files."""
     return int(_number(parent, path, default, where, _whole))
 
 
@@ -149,7 +149,7 @@ def _whole(values: Sequence[float], where: str) -> Sequence[float]:
 
 
 def flag(parent: Element, path: str, default: bool) -> bool:
-    """A truth value at `path`: `true` and `1`; everything else is false, as in SDF."""
+    """A boolean at `path`: `true` and `1`; everything else is false, as in SDF."""
     text = child_text(parent, path).lower()
     return text in TRUE_WORDS if text else default
 
@@ -157,7 +157,7 @@ def flag(parent: Element, path: str, default: bool) -> bool:
 def vector(
     parent: Element, path: str, default: Sequence[float], where: str
 ) -> Vector3 | tuple[float, ...]:
-    """As many numbers at `path` as the default has: most often three."""
+    """As many numbers at `path` as the default has: usually three."""
     text = child_text(parent, path)
     if not text:
         return default
@@ -177,18 +177,18 @@ def colour(parent: Element, path: str, default: Rgba, where: str) -> Rgba:
 
 def fields(read: Callable[..., Value], parent: Element, names: str, usual: Any, where: str,
            folder: str = "", prefix: str = "") -> dict[str, Value]:
-    """What `read` gives for elements in `folder` that are named as the fields of a description.
+    """The results of `read` for elements in `folder` with the names of a description's fields.
 
-    `usual` has the defaults. `prefix` is what the fields' names have before those of the elements.
+    `usual` has the defaults. `prefix` comes before the elements' names in the fields' names.
     """
     return {prefix + name: read(parent, folder + name, getattr(usual, prefix + name), where)
             for name in names.split()}
 
 
 def pose(parent: Element, where: str, default: Pose = IDENTITY) -> Pose:
-    """The `<pose>` of an element in whatever frame it names; the default when absent.
+    """The `<pose>` of an element in whatever frame it names; the default if absent.
 
-    The oldest files write it as the attribute of an `<origin>`.
+    The oldest files have it as an attribute of an `<origin>`.
     """
     text = child_text(parent, "pose")
     origin = None if text else parent.find("origin")

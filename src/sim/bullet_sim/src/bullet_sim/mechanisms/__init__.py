@@ -1,1 +1,1 @@
-"""What holds, joins or moves links and joints, and is no drive train: grippers, lifts, winches."""
+"""Mechanisms that hold, join or move links and joints, besides drives: grippers, lifts, winches."""

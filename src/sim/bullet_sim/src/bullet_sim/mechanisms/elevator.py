@@ -6,29 +6,29 @@ from bullet_sim.joint import Joint
 from bullet_sim.world import World
 
 # ElevatorPlugin.cc, LiftController and DoorController, drives both by forces,
-# force = -p gap - d rate, so heavily damped that both come nearer at the rate p / d times their
+# force = -p gap - d rate, damped so heavily that both approach at a rate of p / d times their
 # gap. The motors here hold these rates.
 LIFT_GAIN = 1.0  # 1/s
 DOOR_GAIN = 2.0  # 1/s
 MOTOR_EFFORT = 1e6  # N
 LIFT_ARRIVED, DOOR_ARRIVED = 0.15, 0.05  # m
-HOLD = 1e-3  # m: nearer than this it is only held
+HOLD = 1e-3  # m: closer than this, it is only held
 OPEN, CLOSED = 1.0, 0.0  # m, of the door's joint
 
 
 class Elevator:
-    """`update` at every step; times are simulated."""
+    """Call `update` at every step; times are simulated."""
 
     def __init__(self, world: World, lift: Joint, door: Joint, floor_height: float = 3.0,
                  door_wait: float = 5.0):
         """Height in m, wait in s."""
         self._world, self._lift, self._door = world, lift, door
         self._floor_height, self._door_wait = floor_height, door_wait
-        self._height = self._gap = 0.0  # m: where lift and door are to be
+        self._height = self._gap = 0.0  # m: wanted positions of lift and door
         self._todo: list[Callable[[], bool]] = []
 
     def go(self, floor: int) -> bool:
-        """Begin a ride; False if one is going on, and then it is left alone."""
+        """Start a ride; False, without any effect, if one is going on."""
         if self._todo:
             return False
         self._floor = floor
@@ -37,7 +37,7 @@ class Elevator:
         return True
 
     def update(self) -> None:
-        """One step nearer."""
+        """Move on by one step."""
         if self._todo:
             if self._begun is None:
                 self._begun = self._world.time

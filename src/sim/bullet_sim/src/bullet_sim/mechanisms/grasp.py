@@ -1,4 +1,4 @@
-"""Holds what fingers press from opposite sides, as friction alone does not in a simulation."""
+"""Holds what fingers press from opposite sides, as friction in a simulation does not."""
 
 import math
 from collections import defaultdict
@@ -10,7 +10,7 @@ from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import Vector3
 from bullet_sim.world import World
 
-LEAST_RATIO = 0.3  # of the smaller of two opposite forces to the greater
+LEAST_RATIO = 0.3  # of the smaller of two opposite forces to the larger
 
 
 @dataclass(frozen=True)
@@ -18,8 +18,8 @@ class GraspParameters:
     """Defaults of GazeboGraspFix.cpp."""
 
     angle: float = math.radians(120)  # rad between two forces that count as opposite
-    most_grips: int = 10  # how far updates with a grip are counted
-    enough_grips: int = 5  # more than that and it is held
+    most_grips: int = 10  # the maximum of the count of updates with a grip
+    enough_grips: int = 5  # with more than that, it is held
     release_tolerance: float = 0.005  # m that a finger may move from where it touched
 
 
@@ -29,11 +29,11 @@ class _Touch:
 
     finger: Link
     point: Vector3  # in the finger's frame, m
-    distance: float  # m, from the middle of what is held
+    distance: float  # m, from the origin of the held link
 
 
 class Grasp:
-    """One gripper; `update` at its own rate. What is held is welded to the palm."""
+    """One gripper; call `update` at its own rate. A held object is welded to the palm."""
 
     def __init__(self, world: World, palm: Link, fingers: Sequence[Link],
                  parameters: GraspParameters):
@@ -43,7 +43,7 @@ class Grasp:
         self.held: Link | None = None
 
     def update(self) -> None:
-        """Look at the contacts of the last step."""
+        """Check the contacts of the last step."""
         if self.held is not None and self._world.models.get(self.held.model.name) \
                 is not self.held.model:
             self.release()  # it was deleted
@@ -57,14 +57,14 @@ class Grasp:
             self._let_go_if_open()
 
     def release(self) -> None:
-        """Open, and forget what was counted."""
+        """Release the object, and reset the counts."""
         if self.held is not None:
             self._weld.release()
         self.held = None
         self._grips.clear()
 
     def _touching(self) -> dict[str, dict[str, list[Contact]]]:
-        """Contacts by the scoped name of the thing's link, then of the finger's; thing first."""
+        """Contacts by the scoped name of the object's link, then of the finger's; object first."""
         found: dict[str, dict[str, list[Contact]]] = defaultdict(lambda: defaultdict(list))
         for contact in self._world.contacts():
             first, second = contact.links
@@ -100,7 +100,7 @@ class Grasp:
                                         math.dist(point, middle)))
 
     def _let_go_if_open(self) -> None:
-        """Fingers lose touch in motion: only those that have moved away release."""
+        """Release if fingers have moved away: they may lose contact in motion without that."""
         grips = self._grips.get(self.held.scoped_name, 0)
         if grips <= self._parameters.enough_grips and self._moved_off():
             self.release()

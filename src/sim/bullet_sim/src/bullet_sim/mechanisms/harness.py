@@ -9,10 +9,10 @@ from bullet_sim.world import World
 
 
 class Harness:
-    """`update` at every step."""
+    """Call `update` at every step."""
 
     def __init__(self, world: World, link: Link, axis: Vector3):
-        """`axis` in the world: where the winch goes at a positive speed.
+        """`axis`, in the world, is the direction of the winch at a positive speed.
 
         SimulationError if it is zero.
         """
@@ -25,7 +25,7 @@ class Harness:
         self._hook = link.attach()
 
     def command(self, speed: float) -> None:
-        """Speed along the axis, m/s; held until the next command."""
+        """Set the speed along the axis, m/s; held until the next command."""
         self._speed = speed
 
     def detach(self) -> None:
@@ -34,7 +34,7 @@ class Harness:
         self._hook.release()
 
     def update(self) -> None:
-        """Wind on by one step."""
+        """Move on by one step."""
         if self._speed:
             step = self._speed * self._world.timestep
             self._hook.shift(Pose(tuple(part * step for part in self._axis)))

@@ -19,9 +19,9 @@ class JointPose:
 
 
 class JointPoses:
-    """`update` at every step; times as in gazebo_ros_joint_pose_trajectory.cpp, UpdateStates.
+    """Call `update` at every step; times as in gazebo_ros_joint_pose_trajectory.cpp, UpdateStates.
 
-    A point is shown as soon as those before it have had their durations, for its own.
+    A point is shown for its duration, as soon as the durations of those before it are over.
     """
 
     def __init__(self, world: World):
@@ -31,7 +31,7 @@ class JointPoses:
 
     def play(self, model: Model, names: Sequence[str], points: Sequence[JointPose],
              start: float, held: Link | None = None) -> None:
-        """From `start` on (s, simulated; now if that is over). `held` keeps its pose.
+        """Play from `start` on (s, simulated; now if it is past). `held` keeps its pose.
 
         Joints that the model does not have are left out.
         """
@@ -43,11 +43,11 @@ class JointPoses:
         self._stand = model.pose if held is None else held.pose
 
     def stop(self) -> None:
-        """Play no more."""
+        """Stop playing."""
         self._points = []
 
     def update(self) -> None:
-        """Show what is due now."""
+        """Show the point that is due."""
         if not self._points:
             return
         if self._world.time >= self._next:

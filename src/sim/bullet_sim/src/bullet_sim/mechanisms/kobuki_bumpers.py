@@ -1,4 +1,4 @@
-"""Which of a round robot's three bumpers is pressed, from what touches it."""
+"""Finds the pressed bumpers of a round robot's three, from its contacts."""
 
 import math
 from collections.abc import Iterable
@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import Pose
 
-# kobuki's: contacts lower than this are the floor, higher ones are parts on the base
+# kobuki's: contacts below these heights are the floor, above them parts on the base
 LOWEST, HIGHEST = 0.01, 0.13  # m above the model frame
 SECTORS = {"left": (math.pi / 6, math.pi / 2), "center": (-math.pi / 6, math.pi / 6),
            "right": (-math.pi / 2, -math.pi / 6)}  # rad from straight ahead, counter-clockwise

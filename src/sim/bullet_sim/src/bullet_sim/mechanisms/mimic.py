@@ -6,9 +6,9 @@ from bullet_sim.control.pid import Pid
 from bullet_sim.joint import Joint
 from bullet_sim.physics.auto_disable import REST_RATE, REST_SPEED
 
-FOLLOWING_EFFORT = 1e3  # N m or N: more than any finger; the joint is to be where it belongs
+FOLLOWING_EFFORT = 1e3  # N m or N: more than any finger's; the joint must be at its position
 CATCH_UP = 5  # steps in which a gap is closed
-SETTLED = 1e-4  # rad or m: nearer than this to a leader at rest it is held: the world may rest, too
+SETTLED = 1e-4  # rad or m: closer to a leader at rest, it is held, so that the world may rest
 
 
 @dataclass(frozen=True)
@@ -17,12 +17,12 @@ class MimicParameters:
 
     multiplier: float = 1.0
     offset: float = 0.0  # rad or m
-    sensitiveness: float = 0.0  # rad or m: gaps below it are left alone
+    sensitiveness: float = 0.0  # rad or m: smaller gaps are ignored
     max_effort: float = 1.0  # N m or N, with a PID
 
 
 class MimicJoint:
-    """Without a PID the follower is held at its place; with one, it is pushed there."""
+    """Without a PID the follower is moved to its position; with one, an effort drives it there."""
 
     def __init__(self, leader: Joint, follower: Joint, parameters: MimicParameters,
                  pid: Pid | None = None):
@@ -54,6 +54,6 @@ class MimicJoint:
         return max(limits.lower, min(limits.upper, wanted))
 
     def reset(self) -> None:
-        """Forget the errors of the past."""
+        """Forget past errors."""
         if self._pid is not None:
             self._pid.reset()

@@ -8,10 +8,10 @@ from bullet_sim.world import World
 
 
 class SpringDamper:
-    """Law and default gains of gazebo_ros_hand_of_god.cpp; `update` at every step.
+    """Formulas and default gains of gazebo_ros_hand_of_god.cpp; call `update` at every step.
 
-    The forces are those of an implicit step, so that a light link is not shaken to pieces; for
-    heavy ones they are the plain law's.
+    The forces are those of an implicit step, so that a light link does not oscillate wildly; for
+    heavy ones they equal the explicit formula's.
     """
 
     def __init__(self, world: World, link: Link, stiffness: float = 200.0,

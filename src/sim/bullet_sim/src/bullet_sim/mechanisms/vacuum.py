@@ -1,4 +1,4 @@
-"""A suction cup: what comes near is carried along, and pulled to it."""
+"""A suction cup: pulls near links to it, and carries them along."""
 
 import math
 from dataclasses import dataclass
@@ -14,18 +14,18 @@ class VacuumParameters:
     """Distances are between the origins of the links; defaults of gazebo_ros_vacuum_gripper."""
 
     max_force: float = 20.0  # N
-    max_distance: float = 0.05  # m: farther things are not attracted
-    min_distance: float = 0.01  # m: nearer things are moved to the cup's origin
+    max_distance: float = 0.05  # m: farther links are not attracted
+    min_distance: float = 0.01  # m: nearer links are moved to the cup's origin
 
 
 class Vacuum:
-    """`update` at every step while it is switched on."""
+    """Call `update` at every step while it is switched on."""
 
     def __init__(self, world: World, cup: Link, parameters: VacuumParameters):
         self._world, self._cup, self._parameters = world, cup, parameters
 
     def update(self) -> bool:
-        """Pull at the links of other models; whether there is one that is held."""
+        """Pull at the links of other models; returns whether one is held."""
         held = False
         for model in self._world.models.values():
             if model is self._cup.model or model.static:

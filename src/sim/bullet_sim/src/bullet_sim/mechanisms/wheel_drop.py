@@ -1,4 +1,4 @@
-"""Which wheels of a base have no ground contact."""
+"""Finds the wheels of a base that have no ground contact."""
 
 from collections.abc import Iterable, Mapping
 
@@ -8,15 +8,15 @@ PATIENCE = 0.1  # s without contact: a wheel that hops over a threshold has not 
 
 
 class WheelDrop:
-    """Call `dropped` again and again: it remembers when each wheel was last on something."""
+    """Call `dropped` regularly: it remembers when each wheel last touched something."""
 
     def __init__(self, wheels: Mapping[str, str], time: float):
-        """Scoped names of the wheels' links by what they are called; `time` is now (s)."""
+        """`wheels`: scoped names of the wheels' links by wheel name; `time` is now (s)."""
         self._wheels = wheels
         self._touched = dict.fromkeys(wheels, time)
 
     def dropped(self, contacts: Iterable[Contact], time: float) -> set[str]:
-        """Names of the wheels that have touched nothing for a while, at `time` (s)."""
+        """Names of the wheels without contact for a while, at `time` (s)."""
         touching = {link for contact in contacts for link in contact.links}
         for name, link in self._wheels.items():
             if link in touching or self._touched[name] > time:  # time was reset

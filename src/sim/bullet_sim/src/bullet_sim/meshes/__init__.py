@@ -1,1 +1,1 @@
-"""Triangles: of mesh files, heightmaps, extrusions and pictures."""
+"""Triangles from mesh files, heightmaps, extrusions and images."""

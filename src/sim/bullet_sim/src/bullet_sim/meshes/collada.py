@@ -1,8 +1,8 @@
-"""COLLADA (.dae) files as Gazebo reads them: the unit scales, up_axis is ignored.
+"""COLLADA (.dae) files, read as by Gazebo: the unit scales, up_axis is ignored.
 
-Its ColladaLoader.cc, Load, multiplies by the file's metres per unit and never turns the model,
-whatever up_axis says; models made for it are drawn accordingly, so a Y_UP file stays as its numbers
-are. Skins are drawn in their bind pose.
+Its ColladaLoader.cc, Load, multiplies by the file's metres per unit and never rotates the model,
+whatever up_axis says; models for Gazebo are made accordingly, so a Y_UP file is not rotated.
+Skins are drawn in their bind pose.
 """
 
 import logging
@@ -59,7 +59,7 @@ def _instances(node: Any, matrix: np.ndarray, name: str, left: Iterator[int],
                ) -> Iterator[tuple[str, Any, np.ndarray]]:
     """Every geometry or controller of a tree, with its node's name and its matrix in the mesh.
 
-    `left` yields once for each node that may still come; FormatError when it ends.
+    `left` yields once for each node still allowed; FormatError when it is exhausted.
     """
     import collada.scene as tree
 
@@ -82,7 +82,7 @@ def _instances(node: Any, matrix: np.ndarray, name: str, left: Iterator[int],
 
 def _parts(instance: Any, matrix: np.ndarray, folder: Path) -> Iterator[MeshPart]:
     geometry = getattr(instance, "geometry", None)
-    if geometry is None:  # a controller: its skin, placed by the bind shape
+    if geometry is None:  # a controller: its skin, placed by the bind shape matrix
         skin = instance.controller
         geometry = skin.geometry
         matrix = matrix @ np.asarray(skin.bind_shape_matrix).reshape(4, 4)
@@ -130,7 +130,7 @@ def _part(triangles: Any, matrix: np.ndarray, material: Material | None) -> Mesh
 
 
 def _material(effect: Any, folder: Path) -> Material:
-    """Without a specular colour: models that are made for Gazebo rely on having none."""
+    """Without a specular colour: models made for Gazebo rely on having none."""
     texture = _texture(effect.diffuse, folder)
     diffuse = _colour(effect.diffuse, (1.0, 1.0, 1.0, 1.0) if texture else (0.7, 0.7, 0.7, 1.0))
     return Material(
@@ -150,7 +150,7 @@ def _colour(value: Any, default: Rgba) -> Rgba:
 
 
 def _opacity(effect: Any) -> float:
-    """COLLADA's two conventions; exporters that mean opaque often write what would be invisible."""
+    """COLLADA's two conventions; for opaque surfaces exporters often write what means invisible."""
     import collada.material
 
     colour = effect.transparent if isinstance(effect.transparent, tuple | list) else None
@@ -166,7 +166,7 @@ def _opacity(effect: Any) -> float:
 
 
 def _texture(value: Any, folder: Path) -> str | None:
-    """Absolute path of a diffuse map, sought as written and beside the file; else a warning."""
+    """Absolute path of a diffuse map, searched as written and next to the file; else a warning."""
     image = getattr(getattr(getattr(value, "sampler", None), "surface", None), "image", None)
     written = getattr(image, "path", None)
     if not written:

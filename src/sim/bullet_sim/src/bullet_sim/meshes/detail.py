@@ -1,4 +1,4 @@
-"""Coarser versions of a part, for when it is so far away that nobody can tell the difference."""
+"""Coarser versions of a part, for distances at which nobody can see the difference."""
 
 import math
 import threading
@@ -10,18 +10,18 @@ import numpy as np
 from bullet_sim.meshes.part import MeshPart, equal_rows, face_normals, welded
 from bullet_sim.meshes.smoothing import meeting_edges
 
-FEWEST = 500  # triangles that are worth it
+FEWEST = 500  # triangles that are worth simplifying
 FINEST, LEVELS = 1 / 512, 6  # of half the part's size, the first tolerance; each is twice the last
-GAIN = 0.7  # of the triangles of the level before, at most
+GAIN = 0.7  # maximum share of triangles of the level before
 # A corner's squares add up over some six planes, so that a surface stays far closer than the root
-# of their sum: balls, rings and capsules within 0.9 of a level's tolerance, levels before included.
+# of their sum: balls, rings and capsules within 0.9 of a level's tolerance, with previous levels.
 SLACK = 1.8
 MOST_AT_CORNER = 500  # triangles
-FOLDED, MOST_RINGS = math.cos(math.radians(150)), 8  # between two triangles' normals; round those
-NEIGHBOURS = 8  # corners of the part whose normals a new one has
-SAME_WAY = math.cos(math.radians(40))  # between a triangle's normal and those, at least
+FOLDED, MOST_RINGS = math.cos(math.radians(150)), 8  # of two triangles' normals; rings around them
+NEIGHBOURS = 8  # corners of the part from which a new corner gets its normal
+SAME_WAY = math.cos(math.radians(40))  # minimum between a triangle's normal and those
 
-# fast_simplification's way "without loss" collapses an edge while the sum of the squares of the
+# The "lossless" mode of fast_simplification collapses an edge while the sum of the squares of the
 # distances to the planes that met there, in the mesh's unit, is below this.
 _lock = threading.Lock()  # fast_simplification keeps its mesh in global variables
 _SQUARE = 2.220446049250313e-16
@@ -29,24 +29,24 @@ _SQUARE = 2.220446049250313e-16
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """A part in few triangles."""
+    """A part with fewer triangles."""
 
     part: MeshPart
-    tolerance: float  # m, that its surface is away from the part's own, about
+    tolerance: float  # m, approximate distance of its surface from the part's own
 
 
 def finest_tolerance(part: MeshPart) -> float:
-    """m, of the first level, if there is one."""
+    """Tolerance of the first level, m, if there is one."""
     low, high = part.vertices.min(axis=0), part.vertices.max(axis=0)
     return float(np.linalg.norm(high.astype(float) - low)) / 2 * FINEST
 
 
 def levels(part: MeshPart, fewest: int = FEWEST) -> list[Level]:
-    """Coarser and coarser ones without image coordinates, of parts of at least `fewest` triangles.
+    """Coarser and coarser levels without image coordinates, if it has at least `fewest` triangles.
 
-    Triangles that are folded on one another stay as they are, such as those of a sheet with two
-    sides: their edges could go anywhere on it. There are none of a part with very many triangles at
-    a corner either, which would take minutes.
+    Triangles that are folded onto one another stay as they are, such as those of a sheet with two
+    sides: their edges could go anywhere on it. A part with very many triangles at a corner, which
+    would take minutes, has no levels.
     """
     first = finest_tolerance(part)
     if len(part.faces) < fewest or first == 0.0:
@@ -74,7 +74,7 @@ def levels(part: MeshPart, fewest: int = FEWEST) -> list[Level]:
 def simplified(vertices: np.ndarray, faces: np.ndarray,
                tolerance: float) -> tuple[np.ndarray, np.ndarray]:
     """Fewer vertices (k, 3) m and faces (j, 3), in planes within `tolerance`, m, of all that they
-    stand for; edges where a surface ends stay as they are."""
+    replace; edges where a surface ends stay as they are."""
     unit = tolerance / np.sqrt(_SQUARE)  # m
     with _lock:
         points, left = fast_simplification.simplify(
@@ -84,7 +84,7 @@ def simplified(vertices: np.ndarray, faces: np.ndarray,
 
 
 def _folded(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """(m,) bool: triangles at edges that are folded, and at those that appear without them."""
+    """(m,) bool: triangles at folded edges, and at those that become so without them."""
     normals, folded = face_normals(vertices[faces]), np.zeros(len(faces), bool)
     for _ in range(MOST_RINGS):
         loose = np.flatnonzero(~folded)
@@ -99,19 +99,19 @@ def _folded(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 class _Shading:
-    """Gives coarser triangles the normals of the part that they stand for."""
+    """Gives coarser triangles the normals of the part that they replace."""
 
     def __init__(self, part: MeshPart):
-        from scipy.spatial import cKDTree  # takes a fifth of a second, and small meshes need none
+        from scipy.spatial import cKDTree  # takes 0.2 s, and small meshes do not need it
 
         self._part = part
         self._near = cKDTree(part.vertices)
 
     def of(self, triangles: np.ndarray) -> MeshPart:
-        """Corners (j, 3, 3). A normal is the mean of the nearest that point as its triangle."""
+        """Corners (j, 3, 3). A normal is the mean of the nearest ones that face as its triangle."""
         corners = triangles.reshape(-1, 3)
         own = np.repeat(face_normals(triangles), 3, axis=0)
-        # A list, also of one, gives an array for each corner.
+        # A list, even of one, gives an array for each corner.
         nearest = list(range(1, min(NEIGHBOURS, len(self._part.vertices)) + 1))
         away, near = self._near.query(corners, nearest)
         normals = self._part.normals[near]  # (3 j, at most NEIGHBOURS, 3)

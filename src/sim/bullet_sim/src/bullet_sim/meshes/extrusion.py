@@ -1,4 +1,4 @@
-"""Triangles of polylines, of pictures used as floor plans, and of roads."""
+"""Triangles of polylines, of images used as floor plans, and of roads."""
 
 import itertools
 from collections.abc import Iterable
@@ -12,9 +12,9 @@ from bullet_sim.errors import FormatError, prefixed
 from bullet_sim.meshes.images import read_image, shrunk
 from bullet_sim.meshes.part import MeshPart, flat_shaded
 
-MOST_POINTS = 2000  # of all outlines together: the work grows with the square
-MOST_BLOCKS = 5000  # of a picture; beyond it the picture is taken at half its size
-LARGEST_PICTURE_PX = 1024  # longest side that is looked at
+MOST_POINTS = 2000  # of all outlines together: the work grows quadratically
+MOST_BLOCKS = 5000  # of an image; with more, it is reduced to half its size
+LARGEST_PICTURE_PX = 1024  # longest side that is used
 PRISM_FACES = np.array([
     (0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7),  # bottom, top
     (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6), (3, 0, 4), (3, 4, 7),
@@ -22,14 +22,14 @@ PRISM_FACES = np.array([
 
 
 def polyline_part(shape: Polyline) -> MeshPart:
-    """The outlines as a solid on z = 0. FormatError of outlines that enclose nothing."""
+    """The outlines as a solid on z = 0. FormatError for outlines that enclose nothing."""
     return _prisms(trapezoids(shape.outlines), shape.height)
 
 
 def image_part(shape: ImageExtrusion) -> MeshPart:
-    """Blocks where the picture is dark; its upper edge is +y, its right edge +x.
+    """Blocks where the image is dark; its upper edge is +y, its right edge +x.
 
-    FormatError without a dark pixel, and as of `read_image`.
+    FormatError without a dark pixel, and as from `read_image`.
     """
     with prefixed("image"):
         image = read_image(shape.path, cv2.IMREAD_GRAYSCALE)
@@ -55,7 +55,7 @@ def image_part(shape: ImageExtrusion) -> MeshPart:
 
 
 def strip_part(shape: Strip) -> MeshPart:
-    """A flat band; the image lies across it once and is repeated along it, undistorted."""
+    """A flat band; the image spans its width once and is repeated along it, undistorted."""
     points = np.array(shape.points, float)
     along = np.gradient(points[:, :2], axis=0)
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
@@ -70,11 +70,11 @@ def strip_part(shape: Strip) -> MeshPart:
 
 
 def trapezoids(outlines: Iterable[Iterable[tuple[float, float]]]) -> np.ndarray:
-    """(n, 4, 2) m, counter-clockwise: what lies inside an odd number of closed outlines.
+    """(n, 4, 2) m, counter-clockwise: the inside of an odd number of closed outlines.
 
-    The plane is cut into slabs between all corners and crossings; in a slab no two edges meet, so
-    that every second gap between them is solid. Holes and crossed outlines need no other care.
-    FormatError where they enclose nothing, or for more than MOST_POINTS.
+    The plane is cut into slabs between all corners and crossings; within a slab no edges cross, so
+    every second gap between them is solid. Holes and crossing outlines need no special treatment.
+    FormatError if they enclose nothing, or for more than MOST_POINTS.
     """
     loops = [np.array(list(outline), float) for outline in outlines]
     if sum(len(loop) for loop in loops) > MOST_POINTS:
@@ -101,10 +101,10 @@ def trapezoids(outlines: Iterable[Iterable[tuple[float, float]]]) -> np.ndarray:
 def dark_rectangles(dark: np.ndarray) -> list[tuple[int, int, int, int]]:
     """Rectangles (left, top, right, bottom), px, that cover a (height, width) mask exactly.
 
-    Runs of a row are joined with equal runs of the row above.
+    Runs of a row are merged with equal runs of the row above.
     """
     done: list[tuple[int, int, int, int]] = []
-    growing: dict[tuple[int, int], int] = {}  # run -> row it began in
+    growing: dict[tuple[int, int], int] = {}  # run -> row in which it began
     for row in range(len(dark) + 1):
         runs = _runs(dark[row]) if row < len(dark) else set()
         for run in [run for run in growing if run not in runs]:
@@ -153,7 +153,7 @@ def _prisms(bases: np.ndarray, height: float) -> MeshPart:
 
 
 def _with_images(part: MeshPart) -> MeshPart:
-    """A texture covers 1 m: seen from above on what is level, upright on walls."""
+    """A texture covers 1 m: seen from above on horizontal faces, upright on walls."""
     x, y, z = part.vertices.T
     level = np.abs(part.normals[:, 2:]) > 0.5
     along = -part.normals[:, 1] * x + part.normals[:, 0] * y

@@ -1,4 +1,4 @@
-"""Triangles of the shapes that no mesh file holds: generated at first use, then cached."""
+"""Triangles of shapes that are not mesh files: generated at first use, then cached."""
 
 import functools
 
@@ -11,7 +11,7 @@ from bullet_sim.meshes.part import MeshPart
 
 
 def generated_parts(shape: Generated) -> tuple[MeshPart, ...]:
-    """Parts of one material each, in the link frame; FormatError where there is nothing to see."""
+    """Parts of one material each, in the link frame; FormatError if there is nothing to see."""
     path = getattr(shape, "path", None)
     with prefixed("image"):
         modified_ns = check_image(path).st_mtime_ns if path else 0
@@ -23,7 +23,7 @@ def generated_parts(shape: Generated) -> tuple[MeshPart, ...]:
 
 @functools.lru_cache(maxsize=32)
 def _made(shape: Generated, _modified_ns: int) -> tuple[MeshPart, ...]:
-    """By the shape and when its file was written: an image written again is read again."""
+    """Cached by the shape and its file's modification time: a changed image is read again."""
     match shape:
         case Heightmap():
             return heightmap_parts(shape)

@@ -1,4 +1,4 @@
-"""Triangles of heightmaps: a grid of heights read from a grey image, in layers of one look each."""
+"""Triangles of heightmaps: a grid of heights from a grey image, in layers with one look each."""
 
 import cv2
 import numpy as np
@@ -8,14 +8,14 @@ from bullet_sim.errors import prefixed
 from bullet_sim.meshes.images import read_image
 from bullet_sim.meshes.part import MeshPart, grid_faces
 
-FINEST = 173  # corners along a side; larger images are taken coarser, see MOST_COLLIDING
+FINEST = 173  # corners along a side; larger images are sampled, see MOST_COLLIDING
 BARE = TerrainLayer(Material(ambient=(0.45, 0.4, 0.3, 1.0), diffuse=(0.45, 0.4, 0.3, 1.0)))
 
 
 def heightmap_parts(shape: Heightmap) -> tuple[MeshPart, ...]:
-    """A part for each layer that shows anywhere, in the link frame.
+    """A part for each layer that is visible anywhere, in the link frame.
 
-    FormatError as of `read_image`.
+    FormatError as from `read_image`.
     """
     heights = _heights(shape)
     rows, columns = heights.shape
@@ -26,7 +26,7 @@ def heightmap_parts(shape: Heightmap) -> tuple[MeshPart, ...]:
     slope_y, slope_x = np.gradient(heights, -along / (rows - 1), across / (columns - 1))
     normals = np.stack([-slope_x, -slope_y, np.ones_like(heights)], axis=-1).reshape(-1, 3)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    # The image's rows follow downwards: each triangle's other side is above.
+    # The image's rows go downwards, so each triangle's other side is above.
     faces = grid_faces(rows, columns).reshape(-1, 2, 3)[:, ::-1, (0, 2, 1)].reshape(-1, 3)
     layers = shape.layers or (BARE,)
     bounds = [layer.lowest for layer in layers[1:]]
@@ -44,7 +44,7 @@ def heightmap_parts(shape: Heightmap) -> tuple[MeshPart, ...]:
 
 
 def _heights(shape: Heightmap) -> np.ndarray:
-    """(rows, columns) m above the black level, the image's upper row first."""
+    """Heights (rows, columns), m above the black level, the image's upper row first."""
     if shape.path is None:
         return np.zeros((2, 2))
     with prefixed("heightmap"):
@@ -57,7 +57,7 @@ def _heights(shape: Heightmap) -> np.ndarray:
 
 
 def _sampled(grey: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """Fewer corners, at the same edges: a pixel is a corner of the ground, not a cell of it."""
+    """Fewer corners, with the same edges: a pixel is a corner of the ground, not a cell of it."""
     upper, lower, down = _between(grey.shape[0], rows)
     left, right, along = _between(grey.shape[1], columns)
     down = down[:, None]
@@ -69,7 +69,7 @@ def _sampled(grey: np.ndarray, rows: int, columns: int) -> np.ndarray:
 
 
 def _between(pixels: int, corners: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of each corner on a line the pixels before and after it, and how near the latter is."""
+    """For each corner on a line, the pixels before and after it, and the weight of the latter."""
     place = np.linspace(0, pixels - 1, corners)
     before = place.astype(np.int64)
     return before, np.minimum(before + 1, pixels - 1), place - before

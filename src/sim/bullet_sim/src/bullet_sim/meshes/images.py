@@ -1,4 +1,4 @@
-"""Reads image files that a model names, after a check of their unpacked size."""
+"""Reads image files named by a model, after a check of their unpacked size."""
 
 import logging
 import os
@@ -16,16 +16,16 @@ log = logging.getLogger(__name__)
 LARGEST_FILE = 100 * 10**6  # bytes
 MOST_PIXELS = 100 * 10**6  # 10 000 x 10 000: 300 MB while it is read
 SILENT = 0  # OpenCV's log level: our own line replaces its messages
-HEADER_BYTES = 2**16  # JPEG's size may follow a preview
+HEADER_BYTES = 2**16  # JPEG's size may come after a preview
 PNG = b"\x89PNG\r\n\x1a\n"
 JPEG = b"\xff\xd8"
-# Its name up to OpenCV 4.12 or so, and the later one; both return the level before.
+# Its name up to about OpenCV 4.12, and the later one; both return the previous level.
 set_log_level = getattr(cv2, "setLogLevel", None) or cv2.utils.logging.setLogLevel
 JPEG_SIZES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}  # markers of a frame's header
 
 
 def check_image(path: Path | str) -> os.stat_result:
-    """The file's status; FormatError, of one line that begins with the path, if it is too large."""
+    """The file's status; FormatError, one line that begins with the path, if it is too large."""
     status = check_file(path, LARGEST_FILE, "make it smaller")
     try:
         with open(path, "rb") as file:
@@ -41,7 +41,7 @@ def check_image(path: Path | str) -> os.stat_result:
 
 
 def warn_if_unreadable(path: str) -> None:
-    """One line for a texture that will not be seen; its pixels are not unpacked for that."""
+    """One line for a texture that cannot be shown; its pixels are not unpacked for that."""
     try:
         check_image(path)
         if not cv2.haveImageReader(path):
@@ -51,12 +51,12 @@ def warn_if_unreadable(path: str) -> None:
 
 
 def read_image(path: Path | str, flags: int, advice: str = "give a PNG or JPEG") -> np.ndarray:
-    """(height, width[, 3]) by OpenCV's `flags`; FormatError as of `check_image`, with `advice`."""
+    """(height, width[, 3]) by OpenCV's `flags`; FormatError as `check_image`, with `advice`."""
     check_image(path)
     before, reason = set_log_level(SILENT), "it is damaged, or no image"
     try:
         image = cv2.imread(str(path), flags)
-    except cv2.error:  # the size, in a kind not looked at here, is beyond what OpenCV may take
+    except cv2.error:  # the size of an unchecked format is beyond OpenCV's limit
         reason = f"it has more than {MOST_PIXELS // 10**6} million pixels, or a long side"
         image, advice = None, "make it smaller"
     finally:
@@ -67,13 +67,13 @@ def read_image(path: Path | str, flags: int, advice: str = "give a PNG or JPEG")
 
 
 def shrunk(image: np.ndarray, factor: float) -> np.ndarray:
-    """The image with its sides times `factor` below 1, and at least one pixel of each."""
+    """The image with its sides times `factor`, below 1, and at least one pixel each."""
     size = [max(1, round(side * factor)) for side in image.shape[1::-1]]
     return cv2.resize(image, size, interpolation=cv2.INTER_AREA)
 
 
 def image_size(header: bytes) -> tuple[int, int] | None:
-    """Width and height, px, from the first bytes of a PNG or JPEG; None where they do not say."""
+    """Width and height, px, from the first bytes of a PNG or JPEG; None if they do not give it."""
     if header.startswith(PNG) and len(header) >= 24:
         return struct.unpack(">II", header[16:24])
     if not header.startswith(JPEG):
@@ -91,7 +91,7 @@ def image_size(header: bytes) -> tuple[int, int] | None:
 def load_image(path: str, largest_px: int) -> np.ndarray | None:
     """(height, width, 4) uint8 RGBA, opaque, bottom row first; None, with a warning, if unreadable.
 
-    An image larger than `largest_px` on a side is shrunk to fit.
+    An image larger than `largest_px` on a side is reduced to fit.
     """
     try:
         image = read_image(path, cv2.IMREAD_COLOR)

@@ -1,4 +1,4 @@
-"""Triangles of mesh files: loaded once, scaled, with the materials that the file itself names."""
+"""Triangles of mesh files: loaded once, scaled, with the materials named by the file itself."""
 
 import functools
 import logging
@@ -22,7 +22,7 @@ from bullet_sim.meshes.wavefront import read_wavefront
 
 __all__ = ["MeshPart", "collision_mesh", "load_mesh"]
 
-LARGEST_FILE = 200_000_000  # bytes; trimesh's OBJ reader takes about 20 times that of memory
+LARGEST_FILE = 200_000_000  # bytes; trimesh's OBJ reader takes about 20 times as much memory
 MOST_DRAWN = 300_000  # triangles of one file; more make the camera slow
 MOST_COLLIDING = 60_000  # triangles of one file; with a million the engine takes ten seconds
 
@@ -35,8 +35,8 @@ _trimesh_log.propagate = False  # a learner's terminal shows our own warning, on
 def load_mesh(geometry: Mesh | Generated) -> tuple[MeshPart, ...]:
     """Parts of a file, one per material, in the mesh's own frame and in metres.
 
-    A file of very many triangles is drawn with fewer (`MOST_DRAWN`), with one warning. FormatError
-    for a file that cannot be read or has no triangles.
+    A file with very many triangles is drawn with fewer (`MOST_DRAWN`), with one warning.
+    FormatError for a file that cannot be read or has no triangles.
     """
     if not isinstance(geometry, Mesh):
         return generated_parts(geometry)
@@ -48,9 +48,9 @@ def load_mesh(geometry: Mesh | Generated) -> tuple[MeshPart, ...]:
 def collision_mesh(geometry: Mesh | Generated) -> tuple[np.ndarray, np.ndarray]:
     """The triangles: vertices (n, 3) float32 in m, equal ones merged, and faces (m, 3) uint32.
 
-    Of more than `MOST_COLLIDING`, so many that stay close to them.
+    With more than `MOST_COLLIDING`, that many that stay close to them.
 
-    FormatError of a file that cannot be read.
+    FormatError for a file that cannot be read.
     """
     whole = join_parts(load_mesh(geometry))
     vertices, faces = whole.vertices, whole.faces
@@ -65,7 +65,7 @@ def collision_mesh(geometry: Mesh | Generated) -> tuple[np.ndarray, np.ndarray]:
 
 @functools.lru_cache(maxsize=256)
 def _load(geometry: Mesh, _modified_ns: int) -> tuple[MeshPart, ...]:
-    """By the mesh and when its file was written: a file written again is read again."""
+    """Cached by the mesh and its file's modification time: a changed file is read again."""
     named = _read(Path(geometry.path), geometry.submesh)
     parts = [part for _, part in _chosen(named, geometry)]
     if geometry.submesh is not None and geometry.centre_submesh:
@@ -82,9 +82,9 @@ def _read(path: Path, submesh: str | None) -> list[NamedPart]:
         raise FormatError(f"mesh {path}: unknown kind {path.suffix!r}; there are: {known}")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of the parsers' own arithmetic
+            warnings.simplefilter("ignore")  # from the parsers' own arithmetic
             parts = reader(path, submesh is not None)
-    except Exception as error:  # parsers of three libraries, each with its own exceptions
+    except Exception as error:  # three libraries' parsers, each with its own exceptions
         raise FormatError(f"mesh {path} cannot be read: {_reason(error)}") from error
     parts = [(name, part) for name, part in parts if len(part.faces)]
     if not parts:
@@ -95,7 +95,7 @@ def _read(path: Path, submesh: str | None) -> list[NamedPart]:
 
 
 def _reason(error: Exception) -> str:
-    """In one line, with what to do where a parser does not say it."""
+    """One line, with advice if the parser gives none."""
     reason = " ".join(str(error).split()) or type(error).__name__
     if isinstance(error, FormatError):
         return reason
@@ -115,7 +115,7 @@ def _chosen(parts: list[NamedPart], geometry: Mesh) -> list[NamedPart]:
 
 
 def _centred(parts: list[MeshPart]) -> list[MeshPart]:
-    """Moved so that the middle of the bounding box is the origin."""
+    """Moved so that the centre of the bounding box is the origin."""
     low = np.min([part.vertices.min(axis=0) for part in parts], axis=0)
     high = np.max([part.vertices.max(axis=0) for part in parts], axis=0)
     middle = ((low + high) / 2).astype(np.float32)
@@ -139,7 +139,7 @@ def _with_fewer_triangles(parts: list[MeshPart], path: str) -> list[MeshPart]:
 
 
 def _scaled(part: MeshPart, scale: tuple[float, float, float]) -> MeshPart:
-    """Scaled along the mesh's axes; a mirroring scale turns triangles so they still face out."""
+    """Scaled along the mesh's axes; mirrored triangles are reversed so that they face out."""
     if scale == (1.0, 1.0, 1.0):
         return part
     x, y, z = scale

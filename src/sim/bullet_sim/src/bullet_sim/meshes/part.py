@@ -1,4 +1,4 @@
-"""One drawable piece of a surface: triangles that share a material."""
+"""A drawable part of a surface: triangles that share a material."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -10,19 +10,19 @@ from bullet_sim.description import Material
 
 @dataclass(frozen=True, eq=False)
 class MeshPart:
-    """Triangles, counter-clockwise seen from outside. Arrays are read, never written."""
+    """Triangles, counter-clockwise seen from outside. Arrays are never written to."""
 
     vertices: np.ndarray  # (n, 3) float32, m
     normals: np.ndarray  # (n, 3) float32, unit length
     uv: np.ndarray | None  # (n, 2) float32, (0, 0) is the lower left corner of the image
     faces: np.ndarray  # (m, 3) uint32
-    material: Material | None = None  # None: the file names none
+    material: Material | None = None  # None: the file gives none
     casts_shadows: bool = True
-    # (k, 4, 8): homogeneous corners of boxes, together around all of it, where somebody needs them
+    # (k, 4, 8): homogeneous corners of boxes that together enclose the part, if needed
     boxes: np.ndarray = field(default_factory=lambda: np.empty((0, 4, 8)))
 
 
-# Odd numbers without a pattern: what rows are multiplied by for a key of 64 bits.
+# Odd numbers without a pattern, by which rows are multiplied for a 64-bit key.
 _ODD = np.array([0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB, 0xD6E8FEB86659FD93,
                  0xA0761D6478BD642F, 0xE7037ED1A0B428DB, 0x8EBC6AF09C88C6E3, 0x589965CC75374CC3],
                 np.uint64)
@@ -51,7 +51,7 @@ def flat_shaded(
 
 def shaded(vertices: np.ndarray, normals: np.ndarray, faces: np.ndarray, uv: np.ndarray | None,
            material: Material | None) -> MeshPart:
-    """A part with normals (n, 3) of any length for its corners (n, 3); those that are alike are
+    """A part with normals (n, 3) of any length for its corners (n, 3); equal ones are
     shared."""
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     return welded(MeshPart(
@@ -64,7 +64,7 @@ def shaded(vertices: np.ndarray, normals: np.ndarray, faces: np.ndarray, uv: np.
 
 
 def face_normals(corners: np.ndarray) -> np.ndarray:
-    """(m, 3) of unit length from the windings of triangles (m, 3, 3); zero of one without area."""
+    """(m, 3), unit length, from the winding of triangles (m, 3, 3); zero for one without area."""
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     return normals / np.where(length > 0, length, 1)
@@ -79,12 +79,12 @@ def welded(part: MeshPart) -> MeshPart:
 
 
 def equal_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The first of each among rows (n, k up to 8) float32, in their order, and for each row (n,)
-    uint32 its place among those. By a key a row: numpy's unique of rows takes ten times as long."""
-    rows = np.ascontiguousarray(rows, np.float32) + np.float32(0.0)  # of the two zeros one
+    """The first of each of the rows (n, k up to 8) float32, in order, and for each row (n,) uint32
+    its index there. Uses a key per row: numpy's unique of rows takes ten times as long."""
+    rows = np.ascontiguousarray(rows, np.float32) + np.float32(0.0)  # makes -0 0
     key = rows.view(np.uint32).astype(np.uint64) @ _ODD[:rows.shape[1]]
     _, kept, index = np.unique(key, return_index=True, return_inverse=True)
-    if not np.array_equal(rows[kept][index.reshape(-1)], rows):  # unequal ones of one key
+    if not np.array_equal(rows[kept][index.reshape(-1)], rows):  # different rows with one key
         _, kept, index = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(kept)
     place = np.empty(len(order), np.uint32)
@@ -93,7 +93,7 @@ def equal_rows(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def join_parts(parts: Sequence[MeshPart]) -> MeshPart:
-    """All triangles as one part, in order, with what else the first one has."""
+    """All triangles as one part, in order, with the other fields of the first one."""
     if len(parts) == 1:
         return parts[0]
     offsets = np.cumsum([0] + [len(part.vertices) for part in parts[:-1]])
@@ -127,7 +127,7 @@ def box_corners(part: MeshPart, thinnest: float = 0.0) -> np.ndarray:
 
 
 def grid_faces(rows: int, columns: int) -> np.ndarray:
-    """(n, 3) triangles of a grid of vertices, row by row; counter-clockwise if rows follow up."""
+    """(n, 3) triangles of a grid of vertices, row by row; counter-clockwise if rows go upwards."""
     row, column = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")
     a = row * columns + column
     b, c, d = a + 1, a + columns + 1, a + columns

@@ -1,4 +1,4 @@
-"""Normals for triangles that come without: smooth over curved surfaces, sharp at edges."""
+"""Normals for triangles without any: smooth over curved surfaces, sharp at edges."""
 
 import math
 
@@ -7,7 +7,7 @@ import numpy as np
 from bullet_sim.description import Material
 from bullet_sim.meshes.part import MeshPart, equal_rows, face_normals, shaded
 
-CREASE = math.radians(30)  # between two triangles; a larger angle is an edge that is seen
+CREASE = math.radians(30)  # between two triangles; a larger angle is a visible edge
 
 
 def smooth_shaded(
@@ -19,8 +19,8 @@ def smooth_shaded(
     """A part whose triangles are shaded as one surface where they meet at less than `CREASE`.
 
     `vertices` (n, 3) m, `faces` (m, 3), `uv` (n, 2). A corner's normal is the mean of those around
-    it, each weighted by its triangle's angle there, so that it does not matter how a flat face is
-    cut up. Corners that look alike are shared.
+    it, each weighted by its triangle's angle there, so that it does not depend on how a flat face
+    is divided. Equal corners are shared.
     """
     corners = np.asarray(vertices, np.float64)[faces]
     normals = face_normals(corners)
@@ -35,8 +35,8 @@ def smooth_shaded(
 
 
 def meeting_edges(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Edges of triangles (m, 3), given by the number of the place of each corner, that lie in one
-    another: two by two, each by the number of the corner that it starts at."""
+    """Pairs of coinciding edges of triangles (m, 3), whose corners are given by vertex index; each
+    edge by the index of the corner at which it starts."""
     start = place.reshape(-1).astype(np.int64)
     end = np.roll(place, -1, axis=1).reshape(-1).astype(np.int64)
     edge = np.minimum(start, end) * (start.max(initial=0) + 1) + np.maximum(start, end)
@@ -47,14 +47,14 @@ def meeting_edges(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _groups(corners: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """(3 m,) of corners (m, 3, 3): equal for those of one place whose triangles hang together there
-    by edges that are no creases."""
+    """(3 m,) groups of corners (m, 3, 3): equal for corners of one vertex whose triangles are
+    connected there by edges that are not creases."""
     place = equal_rows(corners.reshape(-1, 3))[1].reshape(-1, 3)
     first, second = meeting_edges(place)
     smooth = (normals[first // 3] * normals[second // 3]).sum(axis=1) > math.cos(CREASE)
     first, second = first[smooth], second[smooth]
-    # An edge i goes from corner i to the next one of its triangle; the other triangle's edge goes
-    # the same way or back.
+    # Edge i goes from corner i to the next one of its triangle; the other triangle's edge goes
+    # in the same direction or back.
     back = place.reshape(-1)[first] != place.reshape(-1)[second]
     links = np.concatenate([
         np.stack([first, np.where(back, _next(second), second)]),
@@ -68,7 +68,7 @@ def _next(corner: np.ndarray) -> np.ndarray:
 
 
 def _components(count: int, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """(count,): the least number that each can be reached from by links between two."""
+    """(count,): the lowest number from which each can be reached by links between two."""
     least = np.arange(count)
     while True:
         mine, others = least[one], least[other]
@@ -82,7 +82,7 @@ def _components(count: int, one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 
 def _angles(corners: np.ndarray) -> np.ndarray:
-    """(m, 3) rad, of triangles (m, 3, 3) at each corner."""
+    """Angles (m, 3), rad, of triangles (m, 3, 3) at each corner."""
     ahead = np.roll(corners, -1, axis=1) - corners
     behind = np.roll(corners, 1, axis=1) - corners
     across = np.linalg.norm(np.cross(ahead, behind), axis=2)

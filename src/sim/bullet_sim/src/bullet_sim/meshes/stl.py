@@ -1,6 +1,6 @@
 """STL files, text or binary: triangles without material.
 
-Read here and not by trimesh, whose import costs half a second of a simulator's start (measured).
+Read here and not by trimesh, whose import takes half a second of a simulator's start (measured).
 """
 
 import re
@@ -13,9 +13,9 @@ from bullet_sim.errors import FormatError
 from bullet_sim.meshes.part import MeshPart, NamedPart
 from bullet_sim.meshes.smoothing import smooth_shaded
 
-# The binary layout: 80 bytes of anything, the number of facets, and for each facet this.
+# The binary layout: 80 arbitrary bytes, the number of facets, and this for each facet.
 _HEADER_BYTES = 84
-_MOST_FACETS = 10**8  # beyond this the number is letters
+_MOST_FACETS = 10**8  # a larger number is text
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 _SOLID = re.compile(r"^[ \t]*solid\b(.*)$", re.MULTILINE | re.IGNORECASE)
@@ -23,9 +23,9 @@ _VERTEX = re.compile(r"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 
 
 def read_stl(path: Path, split: bool) -> list[NamedPart]:
-    """One part per solid of a text, by its name; a single one has the file's name.
+    """One part per solid of a text file, by its name; a single one has the file's name.
 
-    FormatError for what is no STL.
+    FormatError if it is not STL.
     """
     content = path.read_bytes()
     corners = _binary_corners(content)

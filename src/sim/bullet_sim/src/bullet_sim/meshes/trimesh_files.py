@@ -1,7 +1,7 @@
-"""Kinds that trimesh reads as a scene: .ply, .off, .glb, .gltf. One colour, one picture a part.
+"""Formats that trimesh reads as a scene: .ply, .off, .glb, .gltf. A colour and an image per part.
 
-Gazebo Classic reads none of them; models written for newer tools do. The numbers stay as they are:
-no axis is turned, and glTF's are metres.
+Gazebo Classic reads none of them; models written for newer tools use them. The coordinates stay:
+no axis is rotated, and glTF's are metres.
 """
 
 from pathlib import Path
@@ -18,12 +18,12 @@ LARGEST_PART = 200_000_000  # bytes
 
 
 def read_scene(path: Path, split: bool) -> list[NamedPart]:
-    """One part per geometry at its place in the scene, named after its node."""
+    """One part per geometry, placed as in the scene, and named after its node."""
     import trimesh
     from trimesh.resolvers import FilePathResolver
 
     class Beside(FilePathResolver):
-        """What the file names: buffers and pictures beside it."""
+        """Files named in the file: buffers and images next to it."""
 
         def get(self, name: str) -> bytes:
             check_file(Path(self.parent) / name, LARGEST_PART)
@@ -48,7 +48,7 @@ def _part(mesh: Any, matrix: np.ndarray) -> MeshPart:
 
 
 def _material(mesh: Any) -> Material | None:
-    """The base colour of a glTF surface; None where there is none."""
+    """The base colour of a glTF surface; None if there is none."""
     colour = getattr(getattr(mesh.visual, "material", None), "baseColorFactor", None)
     if colour is None:
         return None

@@ -1,6 +1,6 @@
-"""Wavefront OBJ files: polygons of any number of corners, with the materials of their MTL files.
+"""Wavefront OBJ files: polygons with any number of corners, with materials from their MTL files.
 
-Read here and not by trimesh, which refuses polygons of four corners in a group of their own.
+Read here and not by trimesh, which rejects polygons of four corners in a group of their own.
 """
 
 from collections.abc import Iterable
@@ -22,18 +22,18 @@ WIDTHS = {"v": 3, "vt": 2, "vn": 3}
 
 @dataclass
 class _Statements:
-    """A file's lines by what they say."""
+    """A file's lines by their keyword."""
 
     lists: dict[str, list[str]] = field(default_factory=lambda: {key: [] for key in LISTS})
     corners: dict[tuple[str, str], list[str]] = field(default_factory=dict)
-    # object and material -> corners such as 7/3/5, three for each triangle
+    # object and material -> corners such as 7/3/5, three per triangle
     libraries: list[str] = field(default_factory=list)
 
 
 def read_wavefront(path: Path, split: bool) -> list[NamedPart]:
     """One part per material; with `split`, one per object and material, named as in the file.
 
-    FormatError for indices or numbers that are none.
+    FormatError for invalid indices or numbers.
     """
     statements = _statements(path, split)
     materials = read_materials(path, statements.libraries)
@@ -66,7 +66,7 @@ def _statements(path: Path, split: bool) -> _Statements:
 
 
 def _triangles(corners: list[str], lists: dict[str, list[str]]) -> Iterable[str]:
-    """A polygon as a fan; indices that count from the end of the lists so far, from the start."""
+    """A polygon as a fan; indices relative to the end of the lists so far become absolute."""
     if any("-" in corner for corner in corners):
         corners = [_from_the_start(corner, lists) for corner in corners]
     if len(corners) == 3:
@@ -85,7 +85,7 @@ def _from_the_start(corner: str, lists: dict[str, list[str]]) -> str:
 
 
 def _array(rows: list[str], width: int) -> np.ndarray:
-    """(n, width) of what may have more columns, such as colours, or too few."""
+    """(n, width) from rows that may have more columns, such as colours, or too few."""
     if not rows:
         return np.zeros((0, width))
     columns = len(rows[0].split())
@@ -97,7 +97,7 @@ def _array(rows: list[str], width: int) -> np.ndarray:
 
 
 def _indices(corners: list[str]) -> np.ndarray:
-    """(n, 3) from 0, of position, image coordinate and normal; -1 where a corner has none."""
+    """Indices (n, 3) from 0, of position, image coordinate and normal; -1 if a corner has none."""
     text = " ".join(corners)
     first = corners[0]
     columns = first.count("/") + 1

@@ -11,13 +11,13 @@ LONGEST_FILE_NAME = 255  # characters
 LARGEST_LIBRARY = 4 * 2**20  # bytes
 _log = logging.getLogger(__name__)
 
-Entry = dict[str, list[str]]  # keyword in small letters -> its words
+Entry = dict[str, list[str]]  # keyword in lower case -> its words
 
 
 def read_materials(path: Path, libraries: list[str]) -> dict[str, Material]:
-    """Every `newmtl` of the libraries that the OBJ at `path` names; a missing one is a warning.
+    """All `newmtl` of the libraries named by the OBJ at `path`; a missing one is a warning.
 
-    FormatError of numbers that cannot be.
+    FormatError for impossible numbers.
     """
     values: dict[str, Entry] = {}
     for name in libraries:
@@ -58,7 +58,7 @@ def _material(entry: Entry, mesh: Path) -> Material:
 
 
 def _opacity(entry: Entry) -> float:
-    """`d`, or the older `Tr` that means its opposite; programs that confuse them mean opaque."""
+    """`d`, or the older `Tr`, its opposite; programs that confuse them mean opaque."""
     if "d" in entry:
         return float(entry["d"][-1])
     opacity = 1.0 - float(entry["tr"][0]) if "tr" in entry else 1.0

@@ -1,1 +1,1 @@
-"""The only package that uses PyBullet's integers: a client, and bodies built of descriptions."""
+"""The only package that uses PyBullet's integers: a client, and bodies built from descriptions."""

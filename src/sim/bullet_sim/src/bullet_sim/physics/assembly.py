@@ -1,7 +1,7 @@
 """From a model description to trees that the engine can load: components and welds.
 
 The engine has one friction per link and no plane inside a compound shape, so collisions of a link
-that differ in surface, and every plane, ride on a welded link of their own.
+with different surfaces, and every plane, are on welded links of their own.
 """
 
 from dataclasses import dataclass, field, replace
@@ -20,20 +20,20 @@ from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.twist import negative
 
 WORLD = "world"
-Member = tuple[LinkDescription, JointDescription | None]  # None: nothing carries the link
-# A welded shape needs some mass to count as movable for the collision filter; this is no load.
+Member = tuple[LinkDescription, JointDescription | None]  # None: no joint carries the link
+# A welded link needs some mass to count as movable for the collision filter; this is negligible.
 WELD_INERTIAL = Inertial(mass=1e-6, inertia=(1e-9, 0.0, 0.0, 1e-9, 0.0, 1e-9))
 NO_DIRECTION = (0.0, 0.0, 0.0)  # the default of <fdir1>
 MASSLESS = Inertial(mass=0.0, inertia=(0.0,) * 6)
-MOST_LINKS = 128  # of a tree, in PyBullet; of a larger one it reports nothing
+MOST_LINKS = 128  # of a tree, in PyBullet; it reports nothing of a larger one
 
 
 @dataclass
 class PhysicsLink:
-    """A link as the engine sees it; `offset` is its frame in the described link's frame."""
+    """A link in the engine; `offset` is its frame in the described link's frame."""
 
     name: str
-    described: str  # name of the link of the description that it belongs to
+    described: str  # name of the description's link to which it belongs
     inertial: Inertial
     collisions: list[Collision]
     offset: Pose = IDENTITY
@@ -43,7 +43,7 @@ class PhysicsLink:
     linear_damping: float = 0.0  # <velocity_decay>
     angular_damping: float = 0.0
     carrier: JointDescription | None = None  # the joint that holds it, moving or fixed
-    turned: bool = False  # whether the description has it as the parent of that joint
+    turned: bool = False  # whether it is the parent of that joint in the description
 
 
 @dataclass
@@ -51,8 +51,8 @@ class Tree:
     """One connected set of links; the first one is the base."""
 
     links: list[PhysicsLink] = field(default_factory=list)
-    fixed: bool = False  # the base does not feel forces
-    kinematic: bool = False  # but moves with the velocity it is given
+    fixed: bool = False  # no forces act on the base
+    kinematic: bool = False  # but it moves with a given velocity
     self_collide: bool = False
 
     @property
@@ -62,7 +62,7 @@ class Tree:
 
 
 def assemble(model: ModelDescription) -> list[Tree]:
-    """Trees of a model, in the order of its links. A static model is welded, in as few as can be.
+    """Trees of a model, in the order of its links. A static model is welded into few of them.
     """
     if model.static:
         return _welded_trees(model)
@@ -117,7 +117,7 @@ def _ends(joint: JointDescription) -> tuple[str, str]:
 def _towards(
     child: str, joint: JointDescription, links: dict[str, LinkDescription]
 ) -> JointDescription:
-    """The joint with `child` as its child, turned round if need be; its position stays the same."""
+    """The joint with `child` as its child, reversed if necessary; its position stays the same."""
     if joint.child == child:
         return joint
     old_child = IDENTITY if joint.child == WORLD else links[joint.child].pose
@@ -168,7 +168,7 @@ def _jointed_tree(model: ModelDescription, members: list[Member]) -> Tree:
 def _welded_trees(model: ModelDescription) -> list[Tree]:
     trees: list[Tree] = []
     for link in model.links:
-        own = Tree(fixed=True)  # of this link alone, its surfaces with it
+        own = Tree(fixed=True)  # of this link alone, with its surfaces
         _add(own, replace(link, inertial=MASSLESS), IDENTITY, None, None, link.pose)
         if not trees or len(trees[-1].links) + len(own.links) > MOST_LINKS:
             trees.append(own)
@@ -181,7 +181,7 @@ def _welded_trees(model: ModelDescription) -> list[Tree]:
 
 def _add(tree: Tree, link: LinkDescription, offset: Pose, parent: str | None,
          joint: JointDescription | None, pose_parent: Pose) -> None:
-    """Append the link and the welded carriers of its odd collisions."""
+    """Append the link and the welded links for its other surfaces."""
     back = offset.inverse()
     groups: list[list[Collision]] = []
     for collision in link.collisions:
@@ -206,5 +206,5 @@ def _add(tree: Tree, link: LinkDescription, offset: Pose, parent: str | None,
 def _share_link(a: Collision, b: Collision) -> bool:
     planes = isinstance(a.geometry, Plane) or isinstance(b.geometry, Plane)
     if a.surface.fdir1 != NO_DIRECTION and a.pose.orientation != b.pose.orientation:
-        return False  # one link of the engine has one direction of friction
+        return False  # a link in the engine has one direction of friction
     return a.surface == b.surface and a.laser_retro == b.laser_retro and not planes

@@ -1,9 +1,9 @@
-"""Knows when nothing moves: then a step would only repeat the one before, and is left out.
+"""Detects when nothing moves: then a step would only repeat the one before, and is left out.
 
-And whether something moves fast: then steps need not be solved to the last bit.
+It also detects fast motion: then steps need not be solved to the last bit.
 
-Engines call this auto-disabling; ODE does it for each group of bodies. Ours is stricter, and
-for the world as a whole: one thing that moves, or a motor that wants to, and everything is solved.
+Engines call this auto-disabling; ODE does it for each group of bodies. Ours is stricter, and for
+the world as a whole: if one thing moves, or a motor is to move, everything is solved.
 """
 
 import math
@@ -12,18 +12,18 @@ from typing import Protocol
 
 from bullet_sim.physics.assembly import Tree
 
-REST_SPEED = 2e-4  # m/s; by contacts alone a robot at rest creeps at 1.5e-5 (measured)
+REST_SPEED = 2e-4  # m/s; contacts alone make a robot at rest creep at 1.5e-5 (measured)
 REST_RATE = 5e-3  # rad/s; contacts alone leave 2e-4 of a robot, 1.4e-3 of its wheels (measured)
-FAST_SPEED = 0.05  # m/s; slower things are driven exactly
+FAST_SPEED = 0.05  # m/s; slower motion is solved exactly
 FAST_RATE = 0.5  # rad/s
 SAMPLE_PERIOD = 0.05  # s, simulated
-SAMPLES = 10  # in a row that have to find everything still
-GROWTH = 1.5  # over these samples: more than that is the beginning of a fall
-NOTHING = 1e-3  # of what counts as still; below it growth is only that of rounding errors
+SAMPLES = 10  # in a row that must find everything still
+GROWTH = 1.5  # over these samples: more than that is the start of a fall
+NOTHING = 1e-3  # of the limit of rest; below it, growth is only rounding errors
 
 
 class SimulatedBody(Protocol):
-    """A body as those see it who decide what the engine solves (`physics.body.Body`)."""
+    """A body for those that decide what the engine solves (`physics.body.Body`)."""
 
     number: int  # the engine's
     tree: Tree
@@ -34,11 +34,11 @@ class SimulatedBody(Protocol):
         ...
 
     def wants_to_move(self) -> bool:
-        """Whether a motor has somewhere to go."""
+        """Whether a motor is to move."""
         ...
 
     def speeds(self) -> tuple[float, float]:
-        """Greatest speed, m/s, and rate of turn, rad/s, of any of its parts."""
+        """Maximum speed, m/s, and angular velocity, rad/s, of all its parts."""
         ...
 
     def keep_feedback(self) -> None:
@@ -46,35 +46,35 @@ class SimulatedBody(Protocol):
         ...
 
     def limit_correcting_velocity(self, part: float | None, timestep: float) -> None:
-        """Have contacts correct no more of their depth in each step (s); None: as usual."""
+        """Let contacts correct at most this part of their depth per step (s); None: as usual."""
         ...
 
 
 class AutoDisable:
-    """Asked before every step. What is changed from outside, by anybody, ends the rest."""
+    """Asked before every step. Any change from outside ends the rest."""
 
     def __init__(self):
         self.bodies: list[SimulatedBody] = []
         self.disabled = False  # whether the next step would change nothing
-        self.is_fast = False  # whether anything was fast when last looked at
-        self.found_nan = False  # whether a speed was not finite when last looked at
-        self.steps = 0  # that were needed
+        self.is_fast = False  # whether anything was fast in the last sample
+        self.found_nan = False  # whether a speed was not finite in a sample
+        self.steps = 0  # steps that were needed
         self._motions: deque[float] = deque(maxlen=SAMPLES)
         self.set_step(SAMPLE_PERIOD)
 
     def set_step(self, timestep: float) -> None:
-        """Length of a step, s: how long something has to be still does not depend on it."""
+        """Set the step length, s: how long everything has to be still does not depend on it."""
         self.sample_steps = max(1, round(SAMPLE_PERIOD / timestep))  # steps
         self.wake()
 
     def wake(self) -> None:
-        """Something was changed: a motor, a pose, gravity, what there is."""
+        """Something was changed: a motor, a pose, gravity, or the content."""
         self.disabled = False
         self._motions.clear()
 
     @property
     def nearly_disabled(self) -> bool:
-        """Whether one more sample without motion, of `sample_steps` steps, disables all."""
+        """Whether one more sample without motion, of `sample_steps` steps, disables everything."""
         return len(self._motions) >= SAMPLES - 1 and not self.disabled
 
     @property
@@ -83,7 +83,7 @@ class AutoDisable:
         return self.steps % self.sample_steps == 0
 
     def step_needed(self) -> bool:
-        """Whether the next step would do anything; to be called before each."""
+        """Whether the next step would have any effect; to be called before each."""
         if self.disabled:
             return False
         self.steps += 1
@@ -109,7 +109,7 @@ class AutoDisable:
 
 
 def _motion(speed: float, rate: float, wants_to_move: bool) -> float:
-    """How fast it is, in parts of what counts as still; infinite if it is not, or not finite."""
+    """Motion relative to the limit of rest; infinite above it, or if not finite."""
     if speed < REST_SPEED and rate < REST_RATE and not wants_to_move:
         return max(speed / REST_SPEED, rate / REST_RATE)
     return math.inf

@@ -1,4 +1,4 @@
-"""Joints with two degrees of freedom, as chains of two joints with one: what the engine has."""
+"""Joints with two degrees of freedom, as chains of two joints with one, which the engine has."""
 
 from dataclasses import asdict, replace
 
@@ -7,15 +7,15 @@ from bullet_sim.description import JointDescription
 MOVING = (
     "revolute", "continuous", "prismatic", "ball", "universal", "revolute2", "screw",
 )  # types that the engine moves; gearbox only couples others
-SECOND = "::axis2"  # after a joint's name: its second axis, as the engine has it
-TRAVEL = "::travel"  # after a screw's name: how far it has gone, m
+SECOND = "::axis2"  # after a joint's name: its second axis, as a joint in the engine
+TRAVEL = "::travel"  # after a screw's name: its travel, m
 UNLIMITED = JointDescription("", "", "", "")
 
 
 def single_axis_joints(joint: JointDescription, turned: bool) -> list[JointDescription]:
     """The engine's joints from parent to child; the one with the joint's own name is axis one.
 
-    A tiny link comes between two of them. `turned`: parent and child have changed places.
+    A tiny link comes between two of them. `turned`: parent and child are exchanged.
     """
     if joint.type in ("universal", "revolute2"):
         first = replace(joint, type="revolute")

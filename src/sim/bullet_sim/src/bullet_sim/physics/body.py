@@ -20,29 +20,29 @@ from bullet_sim.physics.springs import Springs
 from bullet_sim.physics.velocity_decay import VelocityDecay
 from bullet_sim.pose import Pose
 
-NOWHERE = -1  # the number of what the engine does not have
-FASTEST_JOINT = 1e3  # rad/s or m/s; the engine's own bound of 100 would hold a small wheel back
+NOWHERE = -1  # the number of a body that is not in the engine
+FASTEST_JOINT = 1e3  # rad/s or m/s; the engine's own limit of 100 would slow a small wheel
 
 
 class Attachment(Protocol):
-    """A constraint or filter on the engine's body itself, made again whenever that is.
+    """A constraint or filter on the engine's body, made again whenever the body is.
 
-    It is false where it has nothing to do.
+    It is false if it has nothing to do.
     """
 
     bodies: list[Body]  # each once, and each has it in `attached`
 
     def attach(self) -> None:
-        """Make it, now that a body is loaded."""
+        """Make it, after a body was loaded."""
         ...
 
     def detach(self) -> None:
-        """Undo it, as a body is about to be unloaded; a second time does nothing."""
+        """Remove it, before a body is unloaded; a second call does nothing."""
         ...
 
 
 def fasten(attachment: Attachment) -> None:
-    """Attach it to its bodies, if it acts at all; what it made before a failure goes again."""
+    """Attach it to its bodies, if it has any effect; after a failure, what it made is removed."""
     try:
         attachment.attach()
     except Exception:
@@ -54,7 +54,7 @@ def fasten(attachment: Attachment) -> None:
 
 
 class Body(BodyLinks, BodyJoints):
-    """A loaded tree, whose links and joints go by name."""
+    """A loaded tree, with links and joints by name."""
 
     def __init__(self, client: PhysicsClient, tree: Tree, pose_world_model: Pose):
         self.tree = tree
@@ -66,7 +66,7 @@ class Body(BodyLinks, BodyJoints):
         self._find_joints()
         self.attached: list[Attachment] = []
         self._link_indices = list(range(len(tree.links) - 1))
-        self.may_auto_disable = True  # as far as its model says
+        self.may_auto_disable = True  # if its model allows it
         self.number = NOWHERE
         try:
             self.load(pose_world_model * self.base_pose_model)
@@ -77,7 +77,7 @@ class Body(BodyLinks, BodyJoints):
 
     @property
     def is_loaded(self) -> bool:
-        """Whether the engine has it."""
+        """Whether it is in the engine."""
         return self.number != NOWHERE
 
     # --- set-up
@@ -95,10 +95,10 @@ class Body(BodyLinks, BodyJoints):
                 self.client.retro[seen] = link.collisions[0].laser_retro
 
     def rebuild(self, links: dict[str, PhysicsLink]) -> None:
-        """Give links of these names other masses, or joints other stops, in full motion.
+        """Give links of these names other masses, or joints other limits, during motion.
 
-        The engine can move no centre of mass and add no stop: it gets the body anew. Poses, rates
-        and motors stay; the body's number changes.
+        The engine cannot move a centre of mass or add a limit: the body is loaded again. Poses,
+        velocities and motors stay; the body's number changes.
         """
         frame, base = self.base_frame(), self.tree.links[0].described
         at, twist = self.link_states()[base]
@@ -129,7 +129,7 @@ class Body(BodyLinks, BodyJoints):
         self._destroy()
 
     def load(self, frame: Pose, attach: bool = True) -> None:
-        """Put it into the engine, still, with the base's frame at `frame` in the world."""
+        """Load it into the engine, at rest, with the base's frame at `frame` in the world."""
         self._create(frame)
         self.client.planes.put(self.number, self.tree, frame)
         self._motors = {}
@@ -139,14 +139,14 @@ class Body(BodyLinks, BodyJoints):
             attachment.attach()
 
     def change_inertial(self, link: str, inertial: Inertial) -> None:
-        """Other mass, centre of mass and inertia, in the described link's frame."""
+        """Change mass, centre of mass and inertia, in the described link's frame."""
         held = self._physics_link[link]
         sound = sound_inertial(inertial, held.collisions, f"link {link}")
         moved = replace(sound, pose=held.offset.inverse() * sound.pose)
         self.rebuild({link: replace(held, inertial=moved)})
 
     def change_joint(self, joint: str, **changes) -> None:
-        """Other fields of its JointDescription: stops, damping, type."""
+        """Change fields of its JointDescription: limits, damping, type."""
         held = self.tree.links[self.joint_index[joint] + 1]
         self.rebuild({held.name: replace(held, joint=replace(held.joint, **changes))})
 
@@ -164,7 +164,7 @@ class Body(BodyLinks, BodyJoints):
             self.change(pybullet.changeDynamics, self.index[link.name], **values)
 
     def limit_correcting_velocity(self, part: float | None, timestep: float) -> None:
-        """Have contacts correct no more of their depth in each step (s); None: as usual."""
+        """Let contacts correct at most this part of their depth per step (s); None: as usual."""
         mass = self._mass()
         for link in self.tree.links:
             if not link.collisions:
@@ -179,22 +179,22 @@ class Body(BodyLinks, BodyJoints):
     def _mass(self) -> float:
         return sum(link.inertial.mass for link in self.tree.links)
 
-    # --- what acts in every step
+    # --- forces in every step
 
     def apply_steady(self) -> None:
-        """Have the next step feel springs and the decay of speeds."""
+        """Apply springs and velocity decay in the next step."""
         for each in self._steady:
             each.apply()
 
     @property
     def acts_steadily(self) -> bool:
-        """Whether `apply_steady` does anything."""
+        """Whether `apply_steady` has any effect."""
         return bool(self._steady)
 
-    # --- leaving
+    # --- removal
 
     def remove(self) -> None:
-        """Take the body out of the world, also where the engine cannot find it any more."""
+        """Remove the body from the world, even if the engine can no longer find it."""
         self.client.auto_disable.bodies.remove(self)
         for attachment in list(self.attached):
             with contextlib.suppress(EngineError):
@@ -224,7 +224,7 @@ class Body(BodyLinks, BodyJoints):
             or self.acts_steadily)
 
     def speeds(self) -> tuple[float, float]:
-        """Greatest speed, m/s, and rate of turn, rad/s, of base and joints; NaN if any is."""
+        """Maximum speed, m/s, and angular velocity, rad/s, of base and joints; NaN if any is."""
         linear, angular = self.read(pybullet.getBaseVelocity)
         speed, rate = max(map(abs, linear)), max(map(abs, angular))
         total = sum(linear) + sum(angular)

@@ -1,4 +1,4 @@
-"""The links of an engine body: where they are, how they move, and forces on them."""
+"""The links of an engine body: their poses, their motion, and forces on them."""
 
 from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.physics.engine_handle import BASE, EngineHandle
@@ -10,7 +10,7 @@ FAR_AWAY = (0.0, 0.0, 1e5)  # m
 
 
 class BodyLinks(EngineHandle):
-    """What a Body does with its links. Link frames are those of the description, in the world."""
+    """The links of a Body. Link frames are those of the description, in the world."""
 
     _physics_link: dict[str, PhysicsLink]
     _link_indices: list[int]  # all but the base
@@ -37,26 +37,26 @@ class BodyLinks(EngineHandle):
         return states
 
     def base_frame(self) -> Pose:
-        """The base link's frame in the world, as the engine has it."""
+        """The base link's frame in the world, from the engine."""
         pose_com = Pose(*self.read(pybullet.getBasePositionAndOrientation))
         return pose_com * self._pose_base_com.inverse()
 
     def engine_frame(self, index: int) -> Pose:
-        """Frame of the engine's link of that number in the world."""
+        """Frame in the world of the engine's link with that number."""
         if index == BASE:
             return self.base_frame()
         row = self.read(pybullet.getLinkState, index, computeForwardKinematics=1)
         return Pose(row[4], row[5])
 
     def set_base_frame(self, frame: Pose) -> None:
-        """Put the base link's frame somewhere at once; joints keep their positions."""
+        """Set the pose of the base link's frame at once; joints keep their positions."""
         if not self._is_number("pose", *frame.position, *frame.orientation):
             return
         frame = Pose(frame.position, normalised(frame.orientation))
         com = frame * self._pose_base_com
         if not self.tree.fixed:
-            # By way of a place far away: the old place's contacts, with their depths, would
-            # count at the new one.
+            # Via a distant position: otherwise contacts of the old position, with their
+            # depths, would count at the new one.
             self.change_without_waking(
                 pybullet.resetBasePositionAndOrientation, FAR_AWAY, com.orientation)
             self.client.change_without_waking(pybullet.performCollisionDetection)
@@ -74,7 +74,7 @@ class BodyLinks(EngineHandle):
         self.change(pybullet.resetBaseVelocity, linear, twist.angular)
 
     def apply_steady_force(self, link: str, force: Vector3) -> None:
-        """As `apply_force`, of what acts in every step: it does not end the world's rest."""
+        """As `apply_force`, for forces of every step: it does not end the world's rest."""
         index = self.index[link]
         self.change_without_waking(pybullet.applyExternalForce, index, force,
                                    self._com_position(index), pybullet.WORLD_FRAME)
@@ -90,7 +90,7 @@ class BodyLinks(EngineHandle):
             self.change(pybullet.applyExternalTorque, index, torque, pybullet.WORLD_FRAME)
 
     def add_twist(self, twist: Twist, origin: Vector3) -> None:
-        """Change the base's motion by that of a rigid whole, `origin` (world) being its centre."""
+        """Add the motion of a rigid whole to the base's, where `origin` (world) is its centre."""
         linear, angular = self.read(pybullet.getBaseVelocity)
         arm = [c - o for c, o in zip(self._com_position(BASE), origin, strict=True)]
         spin = cross(twist.angular, arm)
@@ -99,7 +99,7 @@ class BodyLinks(EngineHandle):
                     [w + a for w, a in zip(angular, twist.angular, strict=True)])
 
     def com_motion(self, index: int) -> tuple[Pose, Vector3, Vector3]:
-        """Centre of mass and principal axes in the world, their velocity and rate of turn."""
+        """Centre of mass and principal axes in the world, their velocity and angular velocity."""
         if index == BASE:
             pose = Pose(*self.read(pybullet.getBasePositionAndOrientation))
             return pose, *self.read(pybullet.getBaseVelocity)

@@ -21,20 +21,20 @@ LOAD_FLAGS = (
     | pybullet.URDF_MAINTAIN_LINK_ORDER
 )
 
-# With SDF's default of 50 a light driven wheel is not solved out: a robot sent straight began to
-# turn after 8 s. 150, the courses' worlds' own value, holds 0.15 m/s within 0.05 %.
+# With SDF's default of 50, a light driven wheel is not solved fully: a robot driving straight began
+# to turn after 8 s. 150, the value in the courses' worlds, holds 0.15 m/s within 0.05 %.
 FEWEST_ITERATIONS = 150
 # The solver stops once no row of an iteration changes by more than the root of this, m^2/s^2 (or
 # rad^2/s^2). EXACT is the engine's own. FAST, 3 mm/s, is for worlds in which something drives:
-# steps of the waffle cost half, its drives of 10 s end within 0.2 mm and 0.2 degrees of the exact
-# ones, and a box at rest on a slope creeps by 0.13 mm/s meanwhile.
+# steps of the waffle take half as long, its drives of 10 s end within 0.2 mm and 0.2 degrees of the
+# exact ones, and a box at rest on a slope meanwhile creeps at 0.13 mm/s.
 EXACT, FAST = 1e-7, 1e-5
-STATIC_FILTER = (2, -3)  # Bullet's group and mask of what never moves: all but its like
+STATIC_FILTER = (2, -3)  # Bullet's group and mask of static bodies: they do not meet each other
 PLACING = (pybullet.loadURDF, pybullet.resetBasePositionAndOrientation)
 
 
 class PhysicsClient:
-    """Owner of one engine instance: everything else reaches PyBullet through its methods."""
+    """Owns one engine instance: all others reach PyBullet through its methods."""
 
     def __init__(self, physics: PhysicsDescription, gravity: Vector3):
         self.auto_disable = AutoDisable()
@@ -54,7 +54,7 @@ class PhysicsClient:
             numSubSteps=0,
             numSolverIterations=max(physics.iterations, FEWEST_ITERATIONS),
             solverResidualThreshold=EXACT,
-            # A pyramid, SDF's default <friction_model>. A cone lets light driven wheels creep:
+            # A pyramid, SDF's default <friction_model>. With a cone light driven wheels creep:
             # a turn in place was 8 % slow.
             enableConeFriction=0,
             deterministicOverlappingPairs=1,
@@ -76,7 +76,7 @@ class PhysicsClient:
     def change_without_waking(self, function, *args, **kwargs):
         """Run a pybullet function that changes something, in a world that may stay at rest.
 
-        For what acts in every step, such as springs, and for changes that are undone at once.
+        For effects in every step, such as springs, and for changes that are undone at once.
         """
         return function(*args, physicsClientId=self._id, **kwargs)
 
@@ -100,9 +100,9 @@ class PhysicsClient:
                     body.keep_feedback()
 
     def load(self, tree: Tree, pose: Pose) -> int:
-        """Make a body of a tree; returns its number. The importer's output is suppressed.
+        """Load a body from a tree; returns its number. The importer's output is suppressed.
 
-        SimulationError where the engine refuses it.
+        SimulationError if the engine rejects it.
         """
         flags = LOAD_FLAGS
         if tree.self_collide:
@@ -117,13 +117,13 @@ class PhysicsClient:
                         useFixedBase=tree.fixed, flags=flags,
                     )
             except EngineError as error:
-                raise SimulationError(f"the engine refuses link {tree.links[0].described} and what "
-                                      f"hangs on it: {error}") from None
+                raise SimulationError(f"the engine rejects link {tree.links[0].described} and the "
+                                      f"links below it: {error}") from None
 
     def _let_collide(self, body: int, on: bool) -> None:
         group, mask = STATIC_FILTER if on else (0, 0)
         self.change(pybullet.setCollisionFilterGroupMask, body, -1, group, mask)
 
     def close(self) -> None:
-        """Disconnect; the client is not to be used afterwards."""
+        """Disconnect; the client must not be used afterwards."""
         pybullet.disconnect(physicsClientId=self._id)

@@ -1,7 +1,7 @@
-"""Which of a model's collisions meet: bit masks, and rules for links of one model.
+"""Which of a model's collisions can touch: bit masks, and rules for links of one model.
 
-Links of one model collide only where both say so with `<self_collide>`, and never when a joint
-holds them together (Gazebo's ODEPhysics::CollisionCallback).
+Links of one model only collide if both allow it by `<self_collide>`, and never if a joint
+connects them (Gazebo's ODEPhysics::CollisionCallback).
 """
 
 import itertools
@@ -13,18 +13,18 @@ from bullet_sim.physics.quiet import pybullet
 
 ALL_BITS = 0xFFFF  # SDF's default of collide_bitmask
 SHIFT = 8  # of these bits in the engine's masks, past its own groups
-RAYS = 1  # the engine's group of rays, and of what moves
+RAYS = 1  # the engine's group of rays, and of movable bodies
 # Body, engine's number of a link with collisions, described link.
 FilteredLink = tuple[Body, int, str]
 
 
 class CollisionFilters:
-    """Of one model; made anew whenever one of its bodies is."""
+    """The filters of one model; made again whenever one of its bodies is."""
 
     def __init__(self, client: PhysicsClient, model: ModelDescription, bodies: list[Body]):
         self._client = client
         self.bodies = bodies
-        self._static = model.static  # then no two parts meet
+        self._static = model.static  # then none of its parts collide
         self._pairs: list[tuple[int, int, int, int]] = []
         self._colliding = set() if model.static else {
             link.name for link in model.links if model.self_collide or link.self_collide}
@@ -36,7 +36,7 @@ class CollisionFilters:
         return bool(self._pairs or self._masked)
 
     def attach(self) -> None:
-        """Tell the engine."""
+        """Set the engine's filters."""
         parts = [(body, index, link.described) for body in self.bodies
                  for index, link in enumerate(body.tree.links, start=-1) if link.collisions]
         self._masked = False
@@ -49,7 +49,7 @@ class CollisionFilters:
                 self._pairs.append(pair)
 
     def detach(self) -> None:
-        """Undo it: the engine gives numbers of bodies again, and would filter the next ones."""
+        """Remove them: the engine reuses numbers of bodies, and would filter the next ones."""
         for pair in self._pairs:
             self._client.change(pybullet.setCollisionFilterPair, *pair, 1)
         self._pairs = []
@@ -65,7 +65,7 @@ class CollisionFilters:
         self._client.change(pybullet.setCollisionFilterGroupMask, body.number, index, group, others)
 
     def _needs_filter(self, one: FilteredLink, other: FilteredLink) -> bool:
-        """Whether the engine would let them meet although they must not."""
+        """Whether the engine would let them collide although they must not."""
         names = {one[2], other[2]}
         if one[0] is other[0] and not one[0].tree.self_collide:
             return False

@@ -1,24 +1,24 @@
-"""A link's contact parameters in the engine's terms, as near to ODE's as these come."""
+"""A link's contact parameters in the engine's terms, as close as possible to ODE's."""
 
 import math
 
 from bullet_sim.description import Collision, Surface
 from bullet_sim.pose import Pose, conjugate, multiply, rotate
 
-SOFTEST, HARDEST = 1.0, 1e5  # N/m between which kp is taken; harder ones are as below
-# Rigid contacts leave open which of four carries how much: robots on two wheels and two casters
-# stood with spinning wheels. ODE lets contacts sink in by its surface layer of 1 mm (ODE manual,
-# dWorldSetContactSurfaceLayer; the depth is SDF's contact_surface_layer). Here a body's
-# weight on three of them sinks in by 0.05 mm: deeper, and what the engine still holds of a wheel's
-# contacts behind its lowest point pushes a robot without motors on (0.3 m in 5 s at 0.5 mm).
+SOFTEST, HARDEST = 1.0, 1e5  # N/m between which kp is used; harder ones are as below
+# Rigid contacts do not determine which of four carries how much: robots on two wheels and two
+# casters stood with spinning wheels. ODE lets contacts sink in by its surface layer of 1 mm (ODE
+# manual, dWorldSetContactSurfaceLayer; the depth is SDF's contact_surface_layer). Here a body's
+# weight on three of them sinks in by 0.05 mm: if deeper, contacts that the engine keeps behind a
+# wheel's lowest point push a robot without motors (0.3 m in 5 s at 0.5 mm).
 SINK, SHARING = 5e-5, 3  # m, contacts
 LEAST_STIFFNESS = 2e5  # N/m
 DAMPING_RATIO = 2.0  # of critical; at 1 free wheels begin to roll, too
-GRAVITY = 9.81  # m/s^2, of the weight that is meant
-# A thing that bounces is some mm deep when it is first found to touch. With the engine's own way to
-# correct that, it jumped to 1.3 times the height that it fell from.
-BOUNCING = 10.0  # times as stiff as what gives way
-EMERGING = 0.5  # s, in which most of the depth goes
+GRAVITY = 9.81  # m/s^2, for the assumed weight
+# A thing that bounces is some mm deep when it is first found to touch. With the engine's own
+# correction of that, it jumped to 1.3 times the height that it fell from.
+BOUNCING = 10.0  # times as stiff as contacts that give way
+EMERGING = 0.5  # s, in which most of the depth is corrected
 UNYIELDING = 1e9  # N/m
 ALIGNED = 0.97  # cosine: fdir1 has to lie along one of the engine's axes
 
@@ -30,8 +30,8 @@ def contact_values(collision: Collision, fixed: bool, com: Pose, mass: float
     `mass` (kg) is that of the whole body.
 
     The engine multiplies two frictions where Gazebo's ODEPhysics::Collide takes the smaller one:
-    what never moves counts as 1 at most, so that the product is the moving part's own coefficient.
-    Two restitutions are multiplied too, hence the roots: two equal values give that value.
+    static bodies have 1 at most, so that the product is the moving part's own coefficient. Two
+    restitutions are multiplied too, hence the roots: two equal values give that value.
     """
     surface = collision.surface
     return {
@@ -43,9 +43,9 @@ def contact_values(collision: Collision, fixed: bool, com: Pose, mass: float
 
 
 def hardness(surface: Surface, fixed: bool, mass: float) -> dict[str, float]:
-    """Stiffness (N/m) and damping (N s/m) of the contacts of a body of `mass` (kg), if it has any.
+    """Stiffness (N/m) and damping (N s/m) of a body of `mass` (kg) in contacts, if any.
 
-    Where `kp` does not say so, that follows from the weight; what never moves is rigid.
+    If `kp` does not give them, they follow from the weight; static bodies are rigid.
     """
     if SOFTEST <= surface.kp <= HARDEST:
         return {"contactStiffness": surface.kp, "contactDamping": max(surface.kd, 0.0)}
@@ -79,7 +79,7 @@ def correcting_velocity_values(part: float, timestep: float) -> dict[str, float]
 
 
 def _friction(surface: Surface, placed: Pose, com: Pose, fixed: bool) -> dict[str, object]:
-    """`mu` along fdir1 and `mu2` across it; without fdir1 `mu` counts in all directions."""
+    """`mu` along fdir1 and `mu2` across it; without fdir1 `mu` applies in all directions."""
     along, across = (min(mu, 1.0) if fixed else mu for mu in (surface.mu, surface.mu2))
     axis = _engine_axis(surface, placed, com)
     greatest = max(along, across)

@@ -1,7 +1,7 @@
-"""What touches what: the engine's contacts under the names of the description's collisions.
+"""The engine's contacts, with the names of the description's collisions.
 
 Conventions are those of ODE's dContactGeom: the normal points into body 1, the force is the one on
-body 1. Nothing is read until somebody asks, so that it costs nothing otherwise.
+body 1. Nothing is read unless asked for, so that it costs nothing otherwise.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from bullet_sim.pose import Pose, Vector3, conjugate, rotate
 
 @dataclass(frozen=True)
 class Contact:
-    """One point in which two collisions touch, after the last step; world axes."""
+    """A point at which two collisions touch, after the last step; world axes."""
 
     collision1: str  # model::link::collision
     collision2: str
     position: Vector3  # m, on the surface of body 2
     normal: Vector3  # unit, from body 2 into body 1
-    depth: float  # m, how far they are in each other; 0 or more
-    force: Vector3  # N, of this point on body 1, friction included
+    depth: float  # m, penetration; 0 or more
+    force: Vector3  # N, of this point on body 1, including friction
 
     @property
     def links(self) -> tuple[str, str]:
@@ -35,13 +35,13 @@ class Contact:
         return self.collision1.rpartition("::")[0], self.collision2.rpartition("::")[0]
 
     def reversed(self) -> Contact:
-        """The same contact seen from the other body."""
+        """The same contact from the other body's view."""
         normal, force = (tuple(-part for part in v) for v in (self.normal, self.force))
         return Contact(self.collision2, self.collision1, self.position, normal, self.depth, force)
 
 
 class Touched:
-    """Names the collision that a point of an engine's link belongs to."""
+    """Finds the collision to which a point of an engine's link belongs."""
 
     def __init__(self, bodies: Iterable[tuple[str, Body]]):
         self._bodies = {body.number: (model, body) for model, body in bodies}
@@ -90,9 +90,9 @@ def _gap(collision: Collision, point: Vector3) -> float:
 
 
 def signed_distance(geometry: Geometry, point: Vector3) -> float:
-    """From a shape's surface, m, negative inside; a mesh counts as the box around it.
+    """Distance from a shape's surface, m, negative inside; a mesh counts as its bounding box.
 
-    FormatError of a mesh that cannot be read.
+    FormatError for a mesh that cannot be read.
     """
     x, y, z = point
     match geometry:
@@ -112,5 +112,5 @@ def signed_distance(geometry: Geometry, point: Vector3) -> float:
 
 
 def _outside(gaps) -> float:
-    """Distance from where all gaps are zero or less; inside, minus the way to the nearest side."""
+    """Distance from where all gaps are negative; inside, minus that to the nearest side."""
     return math.hypot(*(max(gap, 0.0) for gap in gaps)) + min(max(gaps), 0.0)

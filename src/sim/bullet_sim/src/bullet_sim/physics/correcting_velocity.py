@@ -1,9 +1,9 @@
-"""Bounds the velocity at which overlapping bodies separate (ODE: contact_max_correcting_vel).
+"""Limits the velocity at which overlapping bodies separate (ODE: contact_max_correcting_vel).
 
-A contact pushes the harder the deeper it is: a robot that is spawned 6 cm deep in the floor, as
-many launch files do, would leave it at 5 m/s. ODE bounds that speed (ODE manual,
-dWorldSetContactMaxCorrectingVel), Bullet does not; so as long as something is so deep, all contacts
-of the world correct only a small part of their depth in a step.
+A deeper contact pushes harder: a robot that is spawned 6 cm deep in the floor, as in many launch
+files, would leave it at 5 m/s. ODE limits that speed (ODE manual,
+dWorldSetContactMaxCorrectingVel), Bullet does not; so while anything is so deep, all contacts of
+the world only correct a small part of their depth per step.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,27 +11,27 @@ from collections.abc import Callable, Sequence
 from bullet_sim.physics.auto_disable import SimulatedBody
 from bullet_sim.physics.quiet import pybullet
 
-CORRECTED = 0.08  # part of the depth in each step; PyBullet's own, of rigid contacts
-ALL = 1.0  # of it: what is no deeper separates at the engine's own velocity
-FASTEST = 0.2  # m/s at which it separates
-LONGEST = 5.0  # s, simulated, after which the engine has its own way again
+CORRECTED = 0.08  # part of the depth per step; PyBullet's own, for rigid contacts
+ALL = 1.0  # less deep contacts separate at the engine's own velocity
+FASTEST = 0.2  # m/s, of separation
+LONGEST = 5.0  # s, simulated, after which there is no limit any more
 DISTANCE = 8  # column of getContactPoints: m, below 0 where shapes overlap
 
 
 class CorrectingVelocityLimit:
-    """Looks at the depths before each step, from when a body was placed until none is deep.
+    """Checks the depths before each step, from when a body was placed until none is deep.
 
-    `run` runs a pybullet function in the engine; `bodies` is the list of all that are there.
+    `run` runs a pybullet function in the engine; `bodies` is the list of all bodies.
     """
 
     def __init__(self, run: Callable, bodies: Sequence[SimulatedBody]):
         self._run = run
         self._bodies = bodies
-        self._part: float | None = ALL  # that all bodies correct; None: one has come since
-        self._left = 0.0  # s, for which to look on
+        self._part: float | None = ALL  # that all bodies correct; None: one was added since
+        self._left = 0.0  # s, for which checks continue
 
     def watch(self) -> None:
-        """A body was placed."""
+        """Start checking: a body was placed."""
         self._left, self._part = LONGEST, None
 
     def before_step(self, timestep: float) -> None:
@@ -53,7 +53,7 @@ class CorrectingVelocityLimit:
             body.limit_correcting_velocity(None if part == ALL else part, timestep)
 
     def _deepest(self) -> float:
-        """Greatest depth of all contacts, m; 0 or less where nothing overlaps."""
+        """Maximum depth of all contacts, m; 0 or less if nothing overlaps."""
         self._run(pybullet.performCollisionDetection)
         return max((-row[DISTANCE] for row in self._run(pybullet.getContactPoints)),
                    default=0.0)

@@ -13,13 +13,13 @@ BASE = -1  # PyBullet's number of a body's base link
 
 
 class EngineHandle:
-    """What the parts of a Body reach the engine by; the Body fills it in."""
+    """The data through which the parts of a Body access the engine; the Body sets them."""
 
     tree: Tree
     number: int  # the engine's
-    client: PhysicsClient  # of the engine that it is in
+    client: PhysicsClient  # of its engine
     index: dict[str, int]  # physics link -> the engine's number of it and of its joint
-    joint_index: dict[str, int]  # of joints with one axis that can move, as the engine has them
+    joint_index: dict[str, int]  # of joints with one axis that can move in the engine
     ball_index: dict[str, int]  # of ball joints, which have no single angle
     _refused: set[str]  # quantities already reported as not finite
 
@@ -28,7 +28,7 @@ class EngineHandle:
         return self.client.change(function, self.number, *args, **kwargs)
 
     def change_without_waking(self, function, *args, **kwargs):
-        """The same of what acts in every step: a world at rest stays there."""
+        """The same for effects in every step: a world at rest stays at rest."""
         return self.client.change_without_waking(function, self.number, *args, **kwargs)
 
     def read(self, function, *args, **kwargs):

@@ -1,7 +1,7 @@
-"""Masses and inertias that the engine can take: what files say is not always a body's.
+"""Masses and inertias that the engine can use: those in files may be impossible.
 
-The engine stops a link from turning at all when its principal moments break the triangle rule
-(each at most the sum of the others), and lets it fall through the ground when they are far too
+The engine does not turn a link at all if its principal moments violate the triangle inequality
+(each at most the sum of the others), and lets it fall through the ground if they are far too
 small for its size: contacts then turn it round within a step.
 """
 
@@ -19,17 +19,17 @@ from bullet_sim.pose import symmetric_matrix
 
 log = logging.getLogger(__name__)
 
-THINNEST = 0.01  # least radius of gyration in parts of the size; half of it falls through
-SMALLEST = 1e-4  # m, the size of what has no shape
+THINNEST = 0.01  # minimum radius of gyration relative to the size; half of it falls through
+SMALLEST = 1e-4  # m, the size of a link without shape
 HEAVIEST = 1e12  # kg
 LIGHTEST = 1e-9  # kg
 ROUNDING = 1e-6
 
 
 def check_inertial(inertial: Inertial) -> None:
-    """A SimulationError where the numbers are none, or no tensor of inertia.
+    """SimulationError if the numbers are invalid, or no tensor of inertia.
 
-    What breaks only the triangle rule passes: `sound_inertial` mends it.
+    A violation of only the triangle inequality passes: `sound_inertial` corrects it.
     """
     values = (inertial.mass, *inertial.inertia, *inertial.pose.position)
     if not all(map(math.isfinite, values)) or inertial.mass <= 0:
@@ -43,7 +43,7 @@ def check_inertial(inertial: Inertial) -> None:
 
 
 def sound_inertial(inertial: Inertial, collisions: Sequence[Collision], where: str) -> Inertial:
-    """The same where it is possible; else with the least moments that are, and a line in the log.
+    """The same if it is possible; else with the lowest possible moments, and a line in the log.
     """
     mass = min(max(inertial.mass, LIGHTEST), HEAVIEST)
     moments, axes = np.linalg.eigh(symmetric_matrix(inertial.inertia))
@@ -60,7 +60,7 @@ def sound_inertial(inertial: Inertial, collisions: Sequence[Collision], where: s
 
 
 def _possible(moments: np.ndarray, least: float) -> np.ndarray:
-    """Three moments in rising order, none below `least`, the two small ones up to the triangle."""
+    """Three moments, rising, at least `least`, the lower two raised to the triangle inequality."""
     low, middle, high = np.maximum(moments, least)
     missing = high * (1.0 + ROUNDING) - (low + middle)
     if missing <= 0.0:
@@ -71,7 +71,7 @@ def _possible(moments: np.ndarray, least: float) -> np.ndarray:
 
 
 def _size(collisions: Sequence[Collision]) -> float:
-    """Half of what the largest collision measures, m."""
+    """Half the extent of the largest collision, m."""
     return max((_reach(collision.geometry) for collision in collisions), default=0.0)
 
 

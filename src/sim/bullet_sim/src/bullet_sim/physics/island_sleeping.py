@@ -1,10 +1,10 @@
-"""Disables groups of bodies in contact that move too slowly to get anywhere (Bullet's islands).
+"""Disables groups of touching bodies that move too slowly to get anywhere (Bullet's islands).
 
 Overlapping shapes push one another without end, too fast for `auto_disable` and too slowly to get
 anywhere. As in Gazebo's ODEPhysics::Load (physics/ode/ODEPhysics.cc): models without joints that
-touch are disabled once all of them have kept below 0.1 m/s and 0.1 rad/s for a second; whatever
-changes one of them, or pushes it, ends that. Unlike there, the means over that second count, and a
-body that touches none of its kind goes on: a ball that rolls slowly rolls.
+touch are disabled once all of them stayed below 0.1 m/s and 0.1 rad/s for a second; any change of
+one of them, or a push, ends that. Unlike there, the means over that second count, and a body that
+touches no other such body stays enabled: a ball that rolls slowly keeps rolling.
 """
 
 import math
@@ -30,22 +30,22 @@ FIRST, SECOND = 1, 2  # columns of getContactPoints: the bodies that touch
 
 
 class IslandSleeping:
-    """`after_step` is called after every step, `changed` for every change.
+    """Call `after_step` after every step, `changed` for every change.
 
-    `run` runs a pybullet function without waking anything; `bodies` is the list of all there are.
+    `run` runs a pybullet function without waking anything; `bodies` is the list of all bodies.
     """
 
     def __init__(self, run: Callable, bodies: Sequence[SimulatedBody]):
         self._run = run
         self._bodies = bodies
-        self._poses: dict[int, deque] = {}  # by number, of looks between which it was quiet
+        self._poses: dict[int, deque] = {}  # by number, of the samples since it was last fast
         self._disabled: set[int] = set()
-        self._falling_asleep: set[int] = set()  # of the disabled, those of the last look
-        self._waking: set[int] = set()  # enabled since the last step; the next leaves them out yet
-        self._late: list[tuple[Callable, tuple]] = []  # pushes of those, to be given again
+        self._falling_asleep: set[int] = set()  # those of them from the last sample
+        self._waking: set[int] = set()  # enabled since the last step; not yet in the next one
+        self._late: list[tuple[Callable, tuple]] = []  # pushes of those, to be repeated
 
     def after_step(self, sampling: bool) -> None:
-        """`sampling`: at a sample of AutoDisable, disable what has been slow."""
+        """`sampling`: at a sample of AutoDisable, disable bodies that have been slow."""
         for push, args in self._late:
             self._run(push, *args)
         self._late.clear()
@@ -73,7 +73,7 @@ class IslandSleeping:
         return seen
 
     def changed(self, function: Callable, args: tuple) -> bool:
-        """Enable what a pybullet call concerns; whether that was anything."""
+        """Enable the bodies affected by a pybullet call; returns whether there were any."""
         if function in MOTORS:
             return False
         push = function in PUSHES
@@ -85,7 +85,7 @@ class IslandSleeping:
         self._disabled -= concerned
         self._waking |= concerned
         if push:
-            self._poses.pop(args[0], None)  # what is pushed all the time must stay enabled
+            self._poses.pop(args[0], None)  # a body that is pushed continuously must stay enabled
             if args[0] in self._waking:
                 self._late.append((function, args))
         elif function is pybullet.removeBody:
@@ -112,7 +112,7 @@ class IslandSleeping:
 
 
 def _slower(before: tuple, after: tuple, seconds: float) -> bool:
-    """Whether it went from pose to pose, in so long, below both thresholds."""
+    """Whether it moved between the poses, in so many seconds, below both thresholds."""
     moved = math.dist(before[0], after[0])
     turned = 2 * math.acos(min(1.0, abs(sum(map(mul, before[1], after[1])))))
     return moved < SPEED * seconds and turned < RATE * seconds
@@ -121,7 +121,7 @@ def _slower(before: tuple, after: tuple, seconds: float) -> bool:
 def _islands(pairs: Iterable[tuple[int, int]], still: set[int]) -> list[set[int]]:
     """Sets of bodies that touch, also through others; static bodies belong to none.
 
-    What touches nothing but that is a set of its own; what touches nothing at all is in none.
+    A body that only touches static ones is a set by itself; one without contact is in none.
     """
     islands: dict[int, set[int]] = {}
     for pair in pairs:

@@ -1,9 +1,9 @@
 """Lets casters be a little lower than the wheels, as ODE's surface layer does.
 
-ODE lets contacts be that are no deeper than the layer (ODE manual, dWorldSetContactSurfaceLayer),
-so that casters which are up to 1 mm too low do not lift the wheels. The engine's contacts push from
-the first: casters before and behind the wheels would carry the robot, and these spin. Hence the
-casters' shapes are put up a little.
+ODE does not correct contacts less deep than the layer (ODE manual, dWorldSetContactSurfaceLayer),
+so casters that are up to 1 mm too low do not lift the wheels. The engine's contacts push from the
+beginning: casters before and behind the wheels would carry the robot, and the wheels would spin.
+Hence the casters' shapes are raised a little.
 """
 
 from dataclasses import replace
@@ -15,16 +15,16 @@ from bullet_sim.physics.supports import Support, find_supports
 from bullet_sim.physics.tyres import resized
 from bullet_sim.pose import Pose, conjugate, rotate
 
-THICKEST = 1e-3  # m; of a thicker layer no more than this counts
+THICKEST = 1e-3  # m; the maximum of the layer that is used
 CLEARANCE = 2e-4  # m, of levelled casters above the wheels' ground: wheels sink in by less
 ROUNDING = 1e-6  # m
-GRIP = 0.5  # part of the greatest friction of all wheels: what has less is a caster
+GRIP = 0.5  # part of the maximum friction of all wheels: casters have less
 
 
 def levelled(tree: Tree, layer: float) -> Tree:
-    """The tree, no caster being lower than the wheels by up to `layer` (m).
+    """The tree, with casters raised that are lower than the wheels by up to `layer` (m).
 
-    Only where casters before and behind the wheels would carry instead of them.
+    Only if casters before and behind the wheels would carry the robot instead.
     """
     supports = [] if tree.fixed else list(find_supports(tree))
     rolling = [support for support in supports if support.axle and not support.follows]
@@ -44,13 +44,13 @@ def levelled(tree: Tree, layer: float) -> Tree:
 
 
 def _near(support: Support, ground: float, layer: float) -> bool:
-    """Whether it is no lower than the wheels by more than is let be, and hardly higher."""
+    """Whether it is lower than the wheels by no more than the layer, and hardly higher."""
     deepest = min(max(layer, support.collision.surface.min_depth), THICKEST)
     return ground - deepest - ROUNDING < support.bottom < ground + CLEARANCE
 
 
 def _lifted(wheels: list[Support], casters: list[Support]) -> bool:
-    """Whether casters stand before all wheels and behind them."""
+    """Whether there are casters both before and behind all wheels."""
     if not casters:
         return False
     own, others = (np.concatenate([support.feet @ wheels[0].axle.ahead for support in some])
@@ -59,7 +59,7 @@ def _lifted(wheels: list[Support], casters: list[Support]) -> bool:
 
 
 def _raised(link: PhysicsLink, caster: Support, bottom: float) -> PhysicsLink:
-    """The link with that caster's bottom at another height (m); what rolls gets smaller."""
+    """The link with that caster's bottom at another height (m); one that rolls becomes smaller."""
     height = bottom - caster.bottom
     if caster.axle:
         changed = resized(caster.collision, height, caster.axle.radius, caster.axle.centre)

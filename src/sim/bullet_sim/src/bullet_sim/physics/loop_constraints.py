@@ -1,4 +1,4 @@
-"""Joints that close a loop, screws' threads and gearboxes: constraints between links of a model."""
+"""Constraints between links of a model: joints that close a loop, screws' threads and gearboxes."""
 
 import logging
 from collections.abc import Iterator
@@ -14,16 +14,16 @@ from bullet_sim.pose import Pose, Vector3, rotate
 
 log = logging.getLogger(__name__)
 
-STRONGEST = 1e6  # N; the engine's own bound of 500 would let a heavy mechanism come apart
-LEVER = 0.1  # m to either side of a hinge's anchor: two points in place leave one axis to turn
+STRONGEST = 1e6  # N; with the engine's own limit of 500 a heavy mechanism would come apart
+LEVER = 0.1  # m to either side of a hinge's anchor: two fixed points leave one axis to turn
 HINGES = ("revolute", "continuous", "screw")
 NO_PIVOT = (0.0, 0.0, 0.0)
-# What a constraint is made of: bodies and links, kind, axis, pivots, orientations, further values
+# Arguments of a constraint: bodies and links, kind, axis, pivots, orientations, further values
 Rows = Iterator[tuple[tuple, dict]]
 
 
 class LoopConstraints:
-    """All constraints of one model; made anew whenever one of its bodies is."""
+    """All constraints of one model; made again whenever one of its bodies is."""
 
     def __init__(self, client: PhysicsClient, model: ModelDescription, bodies: list[Body],
                  loose: list[JointDescription]):
@@ -38,7 +38,7 @@ class LoopConstraints:
         return bool(self._constraints)
 
     def attach(self) -> None:
-        """Put the constraints in. KeyError of a joint whose link is in no body."""
+        """Create the constraints. KeyError for a joint whose link is in no body."""
         for body in self.bodies:
             for name in body.joint_index:
                 if name.endswith(TRAVEL):
@@ -49,7 +49,7 @@ class LoopConstraints:
                 self._make(*row)
 
     def detach(self) -> None:
-        """Take them out."""
+        """Remove the constraints."""
         for constraint in self._constraints:
             self._client.change(pybullet.removeConstraint, constraint)
         self._constraints = []
@@ -60,7 +60,7 @@ class LoopConstraints:
         self._constraints.append(made)
 
     def _place(self, name: str) -> tuple[Body, PhysicsLink]:
-        """Where a described link is; of the static world, the base of the first fixed body."""
+        """Body and link of a described link; for the static world, the first fixed body's base."""
         for body in self.bodies:
             if name == WORLD and body.tree.fixed:
                 return body, body.tree.links[0]
@@ -125,14 +125,14 @@ class LoopConstraints:
 
 
 def _points(joint: JointDescription) -> list[Vector3]:
-    """Points of the joint's frame that both links keep in one place."""
+    """Points of the joint's frame that coincide in both links."""
     if joint.type not in HINGES:
         return [NO_PIVOT]
     return [tuple(side * part for part in joint.axis) for side in (-LEVER, LEVER)]
 
 
 def _thread(body: Body, travel: str) -> tuple[tuple, dict]:
-    """A screw's travel m and turn rad: travel + turn / thread_pitch = 0."""
+    """A screw's travel, m, and turn, rad: travel + turn / thread_pitch = 0."""
     turn = travel.removesuffix(TRAVEL)
     ends = body.number, body.joint_index[travel], body.number, body.joint_index[turn]
     ratio = 1.0 / body.joint_description(turn).thread_pitch

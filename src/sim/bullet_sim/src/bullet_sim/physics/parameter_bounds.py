@@ -1,4 +1,4 @@
-"""Bounds of physics parameters: outside of them a step takes too long, or its result is useless."""
+"""Limits of physics parameters: beyond them a step takes too long, or its result is useless."""
 
 import logging
 import math
@@ -11,22 +11,22 @@ from bullet_sim.physics.assembly import MOST_LINKS, Tree
 
 log = logging.getLogger(__name__)
 
-SHORTEST_STEP = 1e-5  # s; with shorter ones 10 ms of time, and with it an answer, take a second
-LONGEST_STEP = 0.1  # s; with longer ones things pass through each other
-MOST_ITERATIONS = 10_000  # a step; the bound in gazebo_ros' cfg/Physics.cfg
+SHORTEST_STEP = 1e-5  # s; with shorter ones 10 ms of time, and thus an answer, take a second
+LONGEST_STEP = 0.1  # s; with longer ones bodies pass through each other
+MOST_ITERATIONS = 10_000  # per step; the limit in gazebo_ros' cfg/Physics.cfg
 HIGHEST_RATE = 1e6  # Hz
-# Fields of PhysicsDescription that no parameter of the engine follows, and their names in messages;
-# none may be below 0.
+# Fields of PhysicsDescription without a parameter in the engine, and their names in messages; none
+# may be negative.
 KEPT = {"sor": "sor_pgs_w", "cfm": "cfm", "erp": "erp",
         "contact_surface_layer": "contact_surface_layer",
         "contact_max_correcting_vel": "contact_max_correcting_vel"}
-# PyBullet keeps 128 positions of a body, of which its base takes 7, and reports no more (measured).
+# PyBullet keeps 128 positions of a body, 7 of them its base's, and reports no more (measured).
 MOST_POSITIONS = 121
-BALL_POSITIONS = 4  # a ball joint's: a quaternion
+BALL_POSITIONS = 4  # of a ball joint: a quaternion
 
 
 def check_physics(physics: PhysicsDescription) -> None:
-    """Raise a SimulationError that names the value and its bounds."""
+    """Raise a SimulationError that names the value and its limits."""
     if not SHORTEST_STEP <= physics.max_step_size <= LONGEST_STEP:
         raise SimulationError(f"a time step of {physics.max_step_size:g} s is not possible; "
                               f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} is")
@@ -34,12 +34,12 @@ def check_physics(physics: PhysicsDescription) -> None:
         raise SimulationError(f"an update rate of {physics.real_time_update_rate:g} Hz is not "
                               f"possible; 0 (as fast as it goes) to {HIGHEST_RATE:g} is")
     if not 0 <= physics.iterations <= MOST_ITERATIONS:
-        raise SimulationError(f"{physics.iterations} solver iterations a step are not possible; "
+        raise SimulationError(f"{physics.iterations} solver iterations per step are not possible; "
                               f"0 to {MOST_ITERATIONS} are")
 
 
 def possible_physics(physics: PhysicsDescription) -> PhysicsDescription:
-    """A world file's parameters; the default, with an error line, for what is out of bounds."""
+    """A world file's parameters; the default, with an error line, for those beyond the limits."""
     usual = PhysicsDescription()
     for field in ("max_step_size", "real_time_update_rate", "iterations"):
         asked, default = getattr(physics, field), getattr(usual, field)
@@ -52,9 +52,9 @@ def possible_physics(physics: PhysicsDescription) -> PhysicsDescription:
 
 
 def check_kept(before: PhysicsDescription, after: PhysicsDescription) -> None:
-    """A SimulationError that names what of KEPT was changed to what is not finite, or below zero.
+    """SimulationError that names a value of KEPT that was changed to a negative or not finite one.
 
-    What a world file says is left alone: it does no harm.
+    Values from a world file are not checked: they do no harm.
     """
     for field, name in KEPT.items():
         value = getattr(after, field)
@@ -63,7 +63,7 @@ def check_kept(before: PhysicsDescription, after: PhysicsDescription) -> None:
 
 
 def check_trees(model: str, trees: Iterable[Tree]) -> None:
-    """A SimulationError where a model is more than the engine can hold in one piece."""
+    """SimulationError if a model is larger than the engine can hold in one piece."""
     for tree in trees:
         balls = sum(link.joint is not None and link.joint.type == "ball" for link in tree.links)
         moving = sum(link.joint is not None for link in tree.links)
@@ -74,6 +74,6 @@ def check_trees(model: str, trees: Iterable[Tree]) -> None:
                 f"{counting if balls else ''}; the engine takes at most {MOST_POSITIONS}")
         if len(tree.links) > MOST_LINKS:
             raise SimulationError(
-                f"model {model} has {len(tree.links)} links in one piece, those of fixed joints "
-                f"and of collisions with a surface of their own among them; the engine takes at "
+                f"model {model} has {len(tree.links)} links in one piece, including those of "
+                f"fixed joints and of collisions with different surfaces; the engine takes at "
                 f"most {MOST_LINKS}")

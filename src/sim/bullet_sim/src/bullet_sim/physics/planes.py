@@ -1,7 +1,7 @@
-"""Infinite planes that lie in one place: only the first of them collides.
+"""Infinite planes that coincide: only the first of them collides.
 
-A course is a plane on the ground plane. With both, each wheel has two contacts in one point; the
-solver shares the load out between them, which doubles its work and halves its accuracy.
+A course is a plane on the ground plane. With both, each wheel has two contacts at one point; the
+solver splits the load between them, which doubles its work and halves its accuracy.
 """
 
 from collections.abc import Callable
@@ -14,7 +14,7 @@ Place = tuple[float, ...]  # unit normal and distance from the origin (m), frict
 
 
 class Planes:
-    """Static bodies that are one plane; `switch(body, on)` has one collide or not."""
+    """Static bodies that are one plane; `switch(body, on)` sets whether one collides."""
 
     def __init__(self, switch: Callable[[int, bool], None]):
         self._switch = switch
@@ -22,7 +22,7 @@ class Planes:
         self._idle: set[int] = set()
 
     def put(self, body: int, tree: Tree, frame: Pose) -> None:
-        """A body has come, or was moved; `frame` is that of its base in the world."""
+        """A body was added or moved; `frame` is that of its base in the world."""
         collision = _only_plane(tree)
         if collision is not None:
             self._places[body] = _place(collision, frame)
@@ -56,6 +56,6 @@ def _place(collision: Collision, frame: Pose) -> Place:
     normal = rotate(pose.orientation, collision.geometry.normal)
     distance = sum(n * p for n, p in zip(normal, pose.position, strict=True))
     surface = collision.surface
-    # More than 1 counts as 1 on what never moves, see contact_parameters._friction.
+    # More than 1 counts as 1 on static bodies, see contact_parameters._friction.
     alike = (min(surface.mu, 1.0), surface.restitution, collision.laser_retro)
     return tuple(round(value, 6) for value in (*normal, distance, *alike))

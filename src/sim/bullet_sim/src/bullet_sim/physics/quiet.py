@@ -1,4 +1,4 @@
-"""PyBullet, imported and called with its output suppressed: learners read the terminal."""
+"""PyBullet, imported and called with its output suppressed, because learners read the terminal."""
 
 import contextlib
 import ctypes
@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 @contextlib.contextmanager
 def quiet(*descriptors: int) -> Iterator[None]:
-    """Send file descriptors to /dev/null: PyBullet's C prints there, past sys.stdout."""
+    """Redirect file descriptors to /dev/null: PyBullet's C code prints there, not to sys.stdout."""
     sys.stdout.flush()
     sys.stderr.flush()
     kept = {descriptor: os.dup(descriptor) for descriptor in descriptors}
@@ -19,7 +19,7 @@ def quiet(*descriptors: int) -> Iterator[None]:
             os.dup2(sink, descriptor)
         yield
     finally:
-        ctypes.CDLL(None).fflush(None)  # what C still holds in its buffer goes the same way
+        ctypes.CDLL(None).fflush(None)  # also the contents of C's buffer
         for descriptor, copy in kept.items():
             os.dup2(copy, descriptor)
             os.close(copy)

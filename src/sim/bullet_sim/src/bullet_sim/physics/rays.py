@@ -17,17 +17,17 @@ AT_ONCE = pybullet.MAX_RAY_INTERSECTION_BATCH_SIZE - 1
 class RayHits:
     """Result of a batch of rays; row i belongs to ray i."""
 
-    fraction: np.ndarray  # (n,) of the ray's length; 1 where nothing was hit
-    retro: np.ndarray  # (n,) laser_retro of what was hit
+    fraction: np.ndarray  # (n,) of the ray's length; 1 if nothing was hit
+    retro: np.ndarray  # (n,) laser_retro of the link that was hit
 
 
 def cast_rays(client: PhysicsClient, starts: np.ndarray, ends: np.ndarray) -> RayHits:
-    """First shape along each ray; `starts` and `ends` are (n, 3) in the world, m."""
+    """The first shape along each ray; `starts` and `ends` are (n, 3) in the world, m."""
     fraction, retro = np.ones(len(starts)), np.zeros(len(starts))
     with _without_collector():
         for first in range(0, len(starts), AT_ONCE):
             some = slice(first, first + AT_ONCE)
-            # Of body (-1: nothing was hit), link, fraction, position, normal.
+            # Rows of body (-1: nothing was hit), link, fraction, position, normal.
             rows = client.read(pybullet.rayTestBatch, starts[some].tolist(), ends[some].tolist())
             fraction[some] = [row[2] if row[0] >= 0 else 1.0 for row in rows]
             if client.retro:
@@ -38,8 +38,8 @@ def cast_rays(client: PhysicsClient, starts: np.ndarray, ends: np.ndarray) -> Ra
 
 @contextlib.contextmanager
 def _without_collector() -> Iterator[None]:
-    """Thousands of tuples that are gone again set the garbage collector going, a third of the time
-    of a sweep."""
+    """Without garbage collection, which takes a third of the time of a sweep, as thousands of
+    short-lived tuples trigger it."""
     was_on = gc.isenabled()
     gc.disable()
     try:

@@ -9,15 +9,15 @@ from bullet_sim.twist import add, cross, negative
 def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
     """The load of the joint that carries `link`: force (N) and torque (N m) about its anchor.
 
-    As of Gazebo's ODEJoint::GetForceTorque (physics/ode/ODEJoint.cc): of the joint's child on the
-    joint, in the child link's frame, effort of the joint's motor included; a weight hanging below
-    is a force downwards. The effort of a stop that is being pressed against is missing along the
+    As Gazebo's ODEJoint::GetForceTorque (physics/ode/ODEJoint.cc): of the joint's child on the
+    joint, in the child link's frame, including the motor's effort; a weight hanging below is a
+    downward force. The effort of a limit that is pressed against is missing along the
     axis. Zero until the step after the first call, unless the joint asked for feedback.
     """
     index = body.index[link.name]
     body.enable_feedback(index)
     effort, row = body.joint_effort(index)
-    # The engine: of the parent on the child, about its centre of mass, in its principal axes.
+    # In the engine: of the parent on the child, about its centre of mass, in its principal axes.
     com = body.com_in_link(index)
     force = rotate(com.orientation, row[:3])
     torque = rotate(com.orientation, row[3:])
@@ -27,7 +27,7 @@ def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
         along = tuple(effort * part for part in link.joint.axis)
         if link.joint.type == "prismatic":
             force = add(force, along)
-        else:  # a ball's effort is 0
+        else:  # a ball joint's effort is 0
             torque = add(torque, along)
     anchor = (0.0, 0.0, 0.0) if moves or joint is None else joint.pose.position
     arm = tuple(c - a for c, a in zip(com.position, anchor, strict=True))

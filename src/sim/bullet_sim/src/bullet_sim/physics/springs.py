@@ -1,8 +1,8 @@
-"""Springs and dampers in joints, as stiff as a step of the engine can solve.
+"""Springs and dampers in joints, as stiff as the engine's steps can solve.
 
-Both are explicit in the engine: torques of the state before the step. Where that would swing up
-instead of coming to rest (a wheel of 1e-5 kg m^2 with a damping of 0.7, as many robots say), the
-coefficient is cut to what brings the joint there within a step or two, which looks the same.
+Both are explicit in the engine: forces from the state before the step. If that would oscillate
+instead of coming to rest (a wheel of 1e-5 kg m^2 with a damping of 0.7, as in many robots), the
+coefficient is reduced so that the joint rests within a step or two, which looks the same.
 """
 
 import math
@@ -12,12 +12,12 @@ import numpy as np
 from bullet_sim.physics.body_joints import BodyJoints
 from bullet_sim.physics.quiet import pybullet
 
-MOST_DAMPING = 0.5  # of inertia / step: half the speed goes in a step
-MOST_STIFFNESS = 0.1  # of inertia / step^2: a swing takes at least 20 steps
+MOST_DAMPING = 0.5  # of inertia / step: half the velocity is lost in a step
+MOST_STIFFNESS = 0.1  # of inertia / step^2: an oscillation takes at least 20 steps
 
 
 class Springs:
-    """Of one body; `apply` before each step. Reads inertias once, with joints where they are."""
+    """Springs of one body; `apply` before each step. Reads inertias once, at current positions."""
 
     def __init__(self, body: BodyJoints):
         self._body = body
@@ -39,7 +39,7 @@ class Springs:
         return bool(self._springs)
 
     def apply(self) -> None:
-        """Efforts of the next step; they do not end the world's rest."""
+        """Apply the efforts of the next step; they do not end the world's rest."""
         indices = [index for index, _, _ in self._springs]
         states = self._body.read(pybullet.getJointStates, indices)
         self._body.change_without_waking(
@@ -49,14 +49,14 @@ class Springs:
 
 
 def _inertias(body: BodyJoints, joints: int) -> list[float]:
-    """What each joint has to move when all others are free: kg m^2, or kg."""
+    """The inertia that each joint moves if all others are free: kg m^2, or kg."""
     if body.ball_index:  # the engine has no mass matrix for these: the child's own mass counts
         return [_own_inertia(body, name) for name in body.joint_index]
     positions = [body.joint_state(name)[0] for name in body.joint_index]
     moving = [index for index, name in enumerate(body.joint_index) if not body.is_locked(name)]
     try:
         rows = body.read(pybullet.calculateMassMatrix, [positions[index] for index in moving])
-    except SystemError:  # PyBullet says so that there is none, as for a door 1e9 m from its hinge
+    except SystemError:  # PyBullet's error for no mass matrix, as for a door 1e9 m from its hinge
         return [_own_inertia(body, name) for name in body.joint_index]
     free = np.linalg.pinv(np.array(rows))[-len(moving):, -len(moving):] if moving else ()
     inertias = [math.inf] * joints

@@ -1,6 +1,6 @@
-"""What supports a robot: wheels on level axles, and as casters all else that its base holds.
+"""The supports of a robot: wheels on level axles, and as casters everything else on its base.
 
-On flat ground in the model's frame, joints at zero.
+On flat ground in the model's frame, with joints at zero.
 """
 
 import itertools
@@ -17,16 +17,16 @@ from bullet_sim.physics.assembly import PhysicsLink, Tree
 from bullet_sim.physics.tyres import CENTRED, ROLLING, find_tyre, rolls
 from bullet_sim.pose import Pose, Vector3, rotate, rotation_matrix
 
-FLAT = 0.1  # sine: an axle is about level, or a swivel about upright
-LOWEST = 1e-4  # m: corners that are so little higher than the lowest one stand on the ground, too
-TRAIL = 0.1  # radii that casters run behind their swivels, at least; steered wheels do not
+FLAT = 0.1  # sine: an axle counts as level, or a swivel as upright
+LOWEST = 1e-4  # m: corners this little higher than the lowest one stand on the ground, too
+TRAIL = 0.1  # minimum trail of casters behind their swivels, in radii; steered wheels have less
 
 
 @dataclass(frozen=True)
 class Axle:
-    """What a collision rolls on."""
+    """How a collision rolls."""
 
-    ahead: np.ndarray  # (3,) where it rolls to, in the model's frame; zeros: anywhere
+    ahead: np.ndarray  # (3,) rolling direction, in the model's frame; zeros: any
     centre: Vector3  # m, in the link's frame
     radius: float  # m
 
@@ -40,22 +40,22 @@ class Support:
     collision: Collision
     pose: Pose  # of the collision
     feet: np.ndarray  # (n, 3) m, the lowest points
-    axle: Axle | None = None  # of what rolls
-    follows: bool = False  # whether the axle runs behind a swivel, or turns any way
+    axle: Axle | None = None  # if it rolls
+    follows: bool = False  # whether the axle trails a swivel, or turns in any direction
 
     @property
     def bottom(self) -> float:
-        """Its height, m."""
+        """Height of the lowest point, m."""
         return float(self.feet[:, 2].min())
 
 
 def find_supports(tree: Tree) -> Iterator[Support]:
-    """What the base holds, stiff, on a ball joint or a swivel, and what rolls on these.
+    """Shapes on the base, rigid, on a ball joint or a swivel, and those that roll on these.
 
     Steered wheels are left out.
     """
     frames: dict[str | None, Pose] = {None: Pose()}
-    swivels: dict[str | None, Pose | None] = {None: None}  # of what is held, if it turns on one
+    swivels: dict[str | None, Pose | None] = {None: None}  # of the links found, if they turn on one
     for number, link in enumerate(tree.links):
         frame = frames[link.name] = frames[link.parent] * link.pose_parent
         if link.parent not in swivels:
@@ -92,7 +92,7 @@ def _is_level(link: PhysicsLink, frame: Pose) -> bool:
 
 
 def _ball(link: PhysicsLink, collision: Collision, feet: np.ndarray, pose: Pose) -> Axle | None:
-    """Of a ball, or what passes for one, that turns about its middle."""
+    """Axle of a ball, or of a similar mesh, that turns about its centre."""
     centre = collision.pose.position
     if (link.joint is None or link.joint.type != "ball" or math.hypot(*centre) > CENTRED
             or not isinstance(collision.geometry, Sphere | Mesh)):
@@ -101,7 +101,7 @@ def _ball(link: PhysicsLink, collision: Collision, feet: np.ndarray, pose: Pose)
 
 
 def _axle(link: PhysicsLink, collision: Collision, frame: Pose, feet: np.ndarray) -> Axle | None:
-    """Of what turns about its middle on a level one."""
+    """Axle of a shape that turns about a level axis through its centre."""
     if not rolls(link, collision) or not isinstance(collision.geometry, Cylinder | Sphere | Mesh):
         return None
     x, y, _ = rotate(frame.orientation, link.joint.axis)
@@ -117,7 +117,7 @@ def _trails(feet: np.ndarray, axle: Axle, swivel: Pose) -> bool:
 
 
 def _feet(collision: Collision, pose: Pose) -> np.ndarray | None:
-    """The lowest points of a shape, (n, 3); None for what is neither wheel nor caster."""
+    """The lowest points of a shape, (n, 3); None if it is neither wheel nor caster."""
     turn = rotation_matrix(pose.orientation)
     match collision.geometry:
         case Sphere(radius):

@@ -1,9 +1,9 @@
-"""Wheels as the engine gets them: crowned, so that their contact is in their middle.
+"""Wheel shapes for the engine: crowned, so that their contact is in the middle.
 
-The engine finds one point of a cylinder on a plane, on one of its edges, and keeps those that it
-found before: robots turned on the outer edges of their wheels, 10 % too slowly where these are as
-wide as an eighth of the track, and points behind an axle set wheels without motors rolling.
-So they did on meshes: one that is about round rolls as the circle around it.
+The engine finds one point of a cylinder on a plane, on one of its edges, and keeps earlier ones:
+robots turned on the outer edges of their wheels, 10 % too slowly if these are as wide as an eighth
+of the track, and points behind an axle made wheels without motors roll.
+So it did with meshes: one that is approximately round rolls as its circumscribed circle.
 """
 
 import math
@@ -19,21 +19,21 @@ from bullet_sim.physics.assembly import PhysicsLink
 from bullet_sim.pose import Pose, Quaternion, Vector3, rotate, rotation_matrix
 
 ROLLING = ("revolute", "continuous")
-# Twice the margin that the engine rounds edges with: the tread has one lowest point, and what is
-# found in the next step takes its place. At 3 mm free wheels of 3 cm began to roll again.
+# Twice the margin by which the engine rounds edges: the tread has one lowest point, and the one
+# found in the next step replaces it. At 3 mm free wheels of 3 cm began to roll again.
 TREAD = 0.002  # m, its width
 CROWN = 1e-4  # m, by which the shoulders' radius is less; the tread sinks in by about half
 THINNEST = 0.005  # m, radius
-ALONG = 0.999  # cosine: the cylinder lies along the joint's axis
-CENTRED = 1e-3  # m, that its middle may be off that axis
-ROUND = 0.95  # a mesh's least radius in parts of its greatest; ten corners are about round
-RIM = 0.99  # part of the greatest radius: the tread is in the middle of what reaches it
+ALONG = 0.999  # cosine: the cylinder is along the joint's axis
+CENTRED = 1e-3  # m, maximum distance of its centre from that axis
+ROUND = 0.95  # a mesh's minimum radius relative to its maximum; ten corners are about round
+RIM = 0.99  # part of the maximum radius: the tread is in the middle of the points beyond it
 DIRECTIONS = 100  # in which a mesh's radius is measured
 
 
 @dataclass(frozen=True)
 class Tyre:
-    """How a collision rolls."""
+    """The rolling shape of a collision."""
 
     radius: float  # m
     width: float  # m
@@ -41,7 +41,7 @@ class Tyre:
 
 
 def engine_shapes(link: PhysicsLink) -> Iterable[Collision]:
-    """The link's collisions; wheels come as a narrow tread and the shoulders beside it."""
+    """The link's collisions; wheels become a narrow tread and the shoulders next to it."""
     for collision in link.collisions:
         tyre = find_tyre(link, collision)
         if tyre is None or tyre.radius < THINNEST or tyre.width <= TREAD:
@@ -52,7 +52,7 @@ def engine_shapes(link: PhysicsLink) -> Iterable[Collision]:
 
 
 def resized(collision: Collision, less: float, radius: float, centre: Vector3) -> Collision:
-    """What rolls about `centre`, its radius so much less (m); a mesh gets smaller as a whole."""
+    """A shape that rolls about `centre`, its radius reduced (m); a mesh is scaled as a whole."""
     shape = collision.geometry
     if not isinstance(shape, Mesh):
         return replace(collision, geometry=replace(shape, radius=shape.radius - less))
@@ -64,7 +64,7 @@ def resized(collision: Collision, less: float, radius: float, centre: Vector3) -
 
 
 def find_tyre(link: PhysicsLink, collision: Collision) -> Tyre | None:
-    """Of a cylinder that turns about its own axis, or of a mesh that is round about the link's."""
+    """The tyre of a cylinder that turns about its own axis, or of a mesh round about the link's."""
     shape = collision.geometry
     if isinstance(shape, Mesh):
         return _of_mesh(link, collision) if _turns(link) else None
@@ -115,7 +115,7 @@ def _of_mesh(link: PhysicsLink, collision: Collision) -> Tyre | None:
 
 
 def _perpendicular(axis: np.ndarray) -> np.ndarray:
-    """Two unit vectors across an axis and each other, (2, 3)."""
+    """Two unit vectors perpendicular to an axis and to each other, (2, 3)."""
     first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     first /= np.linalg.norm(first)
     return np.stack((first, np.cross(axis, first)))
@@ -124,7 +124,7 @@ def _perpendicular(axis: np.ndarray) -> np.ndarray:
 def _turned_to(axis: np.ndarray) -> Quaternion:
     """The rotation of z to a unit vector."""
     x, y, z = (float(part) for part in axis)
-    if z < 0.0:  # a tread has no sides: the shorter way
+    if z < 0.0:  # a tread has no sides: the shorter rotation
         x, y, z = -x, -y, -z
     length = math.sqrt(2.0 * (1.0 + z))
     return (-y / length, x / length, 0.0, length / 2.0)

@@ -17,24 +17,24 @@ from bullet_sim.pose import Pose
 log = logging.getLogger(__name__)
 
 Triangles = description.Mesh | description.Generated
-MeshPath = Callable[[Triangles, bool], str]  # of a mesh, or of its hull, to a file
-LONGEST_NAME = 1023  # bytes that the engine has room for; longer ones overwrite what is behind
+MeshPath = Callable[[Triangles, bool], str]  # writes a mesh, or its hull, to a file
+LONGEST_NAME = 1023  # bytes of the engine's buffer; longer names overwrite other memory
 NO_LIMIT = 1e15  # limits at or beyond this mean none
 HULL_MARGIN = 1e-3  # m, by which the engine's hulls are larger than their corners (measured)
 
 
 class MeshFiles:
-    """Writes collision meshes as OBJ into a folder that lives as long as the import takes."""
+    """Writes collision meshes as OBJ into a folder that exists during the import."""
 
     def __init__(self, folder: Path):
         self._folder = folder
         self._written = 0
 
     def __call__(self, mesh: Triangles, hull: bool) -> str:
-        """The file's path; with `hull` only the corners of the triangles count, a margin inwards.
+        """The file's path; with `hull` only the corners of the triangles count, inset by a margin.
 
-        The engine keeps every corner that it reads until the world ends, also of bodies that have
-        gone; of a closed surface each comes six times.
+        The engine keeps every corner that it reads until the world ends, even of removed bodies;
+        of a closed surface each comes six times.
         """
         vertices, faces = collision_mesh(mesh)
         if hull:
@@ -48,7 +48,7 @@ class MeshFiles:
 
 
 def _inset(vertices: np.ndarray) -> np.ndarray:
-    """Vertices (n, 3) of a hull that is, with the engine's margin around it, as large as this."""
+    """Vertices (n, 3) of a hull that, with the engine's margin around it, has this size."""
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     part = np.divide(np.maximum(half - HULL_MARGIN, 0.0), half,
@@ -57,14 +57,14 @@ def _inset(vertices: np.ndarray) -> np.ndarray:
 
 
 def _each_once(faces: np.ndarray) -> np.ndarray:
-    """Faces (m, 3) with the corners of others, in their order; the last begins anew to be full."""
+    """Faces (m, 3) with each corner of the others once, in order; filled up from the first."""
     _, first = np.unique(faces, return_index=True)
     corners = faces.ravel()[np.sort(first)]
     return np.resize(corners, (-(-len(corners) // 3), 3))
 
 
 def urdf_text(links: Iterable[PhysicsLink], mesh_path: MeshPath) -> str:
-    """A `<robot>` whose links keep the order given, the first being the base. SimulationError of a
+    """A `<robot>` whose links keep their order, the first being the base. SimulationError for a
     name that is too long."""
     parts = ['<robot name="body">']
     for link in links:
@@ -81,8 +81,8 @@ def urdf_text(links: Iterable[PhysicsLink], mesh_path: MeshPath) -> str:
 def _name(name: str) -> str:
     size = len(name.encode())
     if size > LONGEST_NAME:
-        raise SimulationError(f"the engine takes names of {LONGEST_NAME} bytes, not one of {size}: "
-                              f"{name}")
+        raise SimulationError(f"the engine takes names of at most {LONGEST_NAME} bytes, not of "
+                              f"{size}: {name}")
     return quoteattr(name)
 
 
@@ -102,11 +102,11 @@ def _inertial(inertial: description.Inertial) -> str:
 
 
 def _collision(collision: description.Collision, fixed: bool, mesh_path: MeshPath) -> str:
-    # Triangles as they are for what never moves; a convex hull otherwise (the engine has no more).
+    # Static bodies have triangles; others a convex hull (the engine has nothing else).
     concave = ' concave="yes"' if fixed and isinstance(collision.geometry, Triangles) else ""
     try:
         geometry = _geometry(collision.geometry, mesh_path, hull=not fixed)
-    except FormatError as error:  # of a mesh file; the rest of the model still spawns
+    except FormatError as error:  # in a mesh file; the rest of the model still spawns
         log.warning("collision %s is left out: %s", collision.name, error)
         return ""
     return (f"<collision{concave}>{_origin(collision.pose)}"
@@ -134,7 +134,7 @@ def _joint(link: PhysicsLink) -> str:
     if kind == "revolute" and joint.lower <= -NO_LIMIT and joint.upper >= NO_LIMIT:
         kind = "continuous"
     if kind in ("revolute", "prismatic") and joint.lower == joint.upper == 0.0:
-        kind = "fixed"  # stops would only nearly hold it, and hide what it bears
+        kind = "fixed"  # limits would only hold it approximately, and hide its load
     if kind == "ball":
         kind = "spherical"
     name = f"{link.name}__weld" if joint is None else joint.name

@@ -1,6 +1,6 @@
-"""`<velocity_decay>`: of its speed a link loses a part in every step (ODE manual, Damping).
+"""`<velocity_decay>`: a link loses a part of its velocity in every step (ODE manual, Damping).
 
-The engine's own damping is one for all links of a body and grows with the square of the speed.
+The engine's own damping is the same for all links of a body and grows with the squared speed.
 """
 
 import math
@@ -13,7 +13,7 @@ SLOWEST = 0.01  # m/s and rad/s below which nothing is lost: ODE's default thres
 
 
 class VelocityDecay:
-    """Of one body; `apply` before each step."""
+    """The velocity decay of one body; `apply` before each step."""
 
     def __init__(self, body: BodyLinks):
         self._body = body
@@ -26,7 +26,7 @@ class VelocityDecay:
         return bool(self._links)
 
     def apply(self) -> None:
-        """Forces and torques that take that part in the next step."""
+        """Apply forces and torques that remove that part in the next step."""
         step = self._body.client.timestep
         for name, linear, angular in self._links:
             index = self._body.index[name]

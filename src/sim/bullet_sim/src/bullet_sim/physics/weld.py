@@ -1,18 +1,18 @@
-"""Welds made while the world runs: of two links, or of a link to a place in the world."""
+"""Welds made while the world runs: between two links, or of a link to the world."""
 
 from bullet_sim.physics.body import Body, fasten
 from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import Pose
 
-WORLD_BODY = -1  # PyBullet's number of what is no body
+WORLD_BODY = -1  # PyBullet's number for no body
 STRONGEST = 1e6  # N and N m: more than any load of a robot
 
 
 class Weld:
-    """Holds a link as it is now, seen from another one or from the world, until `release`.
+    """Holds a link at its current pose relative to another one or the world, until `release`.
 
-    It outlives a body's rebuild. The engine's constraint ties centres of mass, which a rebuild may
-    move; what is kept is therefore the pose of the link's own frame.
+    It outlives a body's rebuild. The engine's constraint connects centres of mass, which a rebuild
+    may move; therefore the pose of the link's own frame is kept.
     """
 
     def __init__(self, body: Body, link: str, other: Body | None = None, other_link: str = ""):
@@ -24,20 +24,20 @@ class Weld:
         fasten(self)
 
     def _present_pose(self) -> Pose:
-        """Of the link's frame, seen from what holds it."""
+        """Pose of the link's frame relative to the holder."""
         pose = self._body.engine_frame(self._body.index[self._link])
         if self._other is None:
             return pose
         return self._other.engine_frame(self._other.index[self._other_link]).inverse() * pose
 
     def renew(self) -> None:
-        """Hold the link as it is now, after it or its holder was put elsewhere."""
+        """Hold the link at its current pose, after it or its holder was moved."""
         self.detach()
         self._pose_holder_link = self._present_pose()
         self.attach()
 
     def attach(self) -> None:
-        """Put the constraint in, if both bodies are there."""
+        """Create the constraint, if both bodies are loaded."""
         if self._constraint is not None or not all(each.is_loaded for each in self.bodies):
             return
         held = self._held()
@@ -51,14 +51,14 @@ class Weld:
         client.change(pybullet.changeConstraint, self._constraint, maxForce=STRONGEST)
 
     def detach(self) -> None:
-        """Remove the constraint; `attach` makes it again."""
+        """Remove the constraint; `attach` creates it again."""
         if self._constraint is None:
             return
         constraint, self._constraint = self._constraint, None
         self._body.client.change(pybullet.removeConstraint, constraint)
 
     def _held(self) -> Pose:
-        """Where the link's centre of mass is held: seen from the holder's, or in the world."""
+        """Pose at which the link's centre of mass is held: relative to the holder's, or world."""
         held = self._pose_holder_link * self._body.com_in_link(self._body.index[self._link])
         if self._other is None:
             return held
@@ -66,7 +66,7 @@ class Weld:
         return com.inverse() * held
 
     def shift(self, change: Pose) -> None:
-        """Of a link held in the world: move where it is held by a displacement in the world."""
+        """For a link held in the world: move its holding pose by a displacement in the world."""
         self._pose_holder_link = change * self._pose_holder_link
         if self._constraint is None:
             return
@@ -76,7 +76,7 @@ class Weld:
             jointChildFrameOrientation=held.orientation, maxForce=STRONGEST)
 
     def release(self) -> None:
-        """Let go; a second time does nothing."""
+        """Release the link; a second call does nothing."""
         self.detach()
         for each in self.bodies:
             if self in each.attached:

@@ -1,1 +1,1 @@
-"""Drawing the scene: one protocol, one file per backend."""
+"""Rendering of the scene: one protocol, one module per backend."""

@@ -1,10 +1,10 @@
-"""The renderer people normally have: OpenGL without a screen, on a graphics card or llvmpipe.
+"""The usual renderer: OpenGL without a screen, on a graphics card or llvmpipe.
 
-Made for llvmpipe, OpenGL in software: one pass for colour and depth, one clear, triangles uploaded
-once, faces that look away and links outside the picture not drawn, meshes in fewer triangles where
-half a pixel makes no difference (meshes/detail), near things first, light per corner where that is
-enough; no MSAA, no anisotropic filtering, which a graphics card has (`target`). Shadows are a pass
-of their own, only where something casts them (`shadows`). Back faces are not drawn, so that a
+Optimised for llvmpipe, OpenGL in software: one pass for colour and depth, one clear, triangles
+uploaded once, back faces and links outside the image culled, meshes with fewer triangles where
+half a pixel makes no difference (meshes/detail), near objects first, lighting per corner where
+that is enough; no MSAA, no anisotropic filtering, which a graphics card has (`target`). Shadows are
+a separate pass, only where something casts them (`shadows`). Back faces are not drawn, so that a
 camera inside its own housing sees out.
 """
 
@@ -43,16 +43,16 @@ from bullet_sim.rendering.sky import Sky
 from bullet_sim.rendering.target import Quality, Target, quality_of
 from bullet_sim.rendering.visibility import Outlines, Visibility
 
-# OpenGL gives rows bottom first. Drawing upside down makes them top first and turns every winding.
+# OpenGL has the bottom row first. Drawing upside down puts the top row first and flips the winding.
 _UPSIDE_DOWN = np.diag([1.0, -1.0, 1.0, 1.0])
-# A highlight of less than half a grey level is not worth working out for each pixel.
+# A highlight of less than half a grey level is not worth computing per pixel.
 _VISIBLE = 0.5 / 255
-_UNSEEN = 0.5  # px that what is drawn may be away from the mesh; half of it where depth is wanted
+_UNSEEN = 0.5  # px of allowed deviation from the mesh; half of it if depth is wanted
 _MOST_DEVICES = 8
 _VERSIONS_KEPT = 2  # of scenes: the one being drawn, and the one before
 # In `polygon_offset`'s units. llvmpipe's depth of one plane is off by up to 6/2**24 (measured), and
-# a unit is 2/2**24 there: enough to decide between two planes, and 0.6 mm at 3 m for `near` 0.02.
-# On a card what vertices are moved by is added (`target`).
+# a unit is 2/2**24 there: enough to separate two planes, and 0.6 mm at 3 m for `near` 0.02.
+# On a card, the snapping of vertices is added (`target`).
 _RECESS = 10.0
 
 
@@ -63,11 +63,11 @@ class _Item:
     plain: Drawing
     shaded: Drawing | None  # where shadows fall
     triangles: Triangles
-    kinds: tuple[Kind, Kind | None]  # of the two
-    coarser: dict[int, _Item]  # by the place among the coarser triangles
+    kinds: tuple[Kind, Kind | None]  # of the two drawings
+    coarser: dict[int, _Item]  # by the index among the coarser triangles
 
 
-_Piece = tuple[_Item, Drawing, Scissor | None]  # what is drawn, how, in which part of the picture
+_Piece = tuple[_Item, Drawing, Scissor | None]  # what is drawn, how, in which part of the image
 
 
 @dataclass(eq=False)
@@ -77,7 +77,7 @@ class _Prepared:
     lights: moderngl.Buffer
     items: list[list[_Item]]  # of each node's parts, in the nodes' order
     outlines: Outlines
-    ranks: dict[float, int]  # by size of plane: the larger is drawn farther back
+    ranks: dict[float, int]  # by size of plane: larger ones are drawn farther back
     shadows: Shadows | None
     kinds: set[Kind]
 
@@ -87,7 +87,7 @@ class EglRenderer:
 
     def __init__(self, profiler: Profiler | None = None,
                  quality: Callable[[moderngl.Context], Quality] = quality_of) -> None:
-        """`quality`: of what pictures are made like; without it, as fits what draws."""
+        """`quality`: settings of images; by default those suited to the device."""
         self._profiler = profiler or Profiler()
         self._context = _open_context()
         with self._context:  # leaving it releases the context, so that any thread may draw
@@ -105,7 +105,7 @@ class EglRenderer:
         self._targets: dict[tuple[int, int, int], Target] = {}
 
     def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
-        """RGB, and depth if wanted, of one pass."""
+        """RGB, and depth if wanted, in one pass."""
         measure = self._profiler.measure
         with self._context:
             target = self._target(view.width, view.height, depth)
@@ -118,7 +118,7 @@ class EglRenderer:
             with measure("read back"):
                 rgba, raw = target.read(depth)
         with measure("convert"):
-            # RGBA is what llvmpipe holds; OpenCV drops the alpha faster than OpenGL would.
+            # llvmpipe stores RGBA; OpenCV drops the alpha faster than OpenGL would.
             rgb = cv2.cvtColor(rgba, cv2.COLOR_RGBA2RGB)
             metres = None if raw is None else metres_from_depth(raw, view.near, view.far)
         return Frame(rgb, metres)
@@ -127,7 +127,7 @@ class EglRenderer:
         self._prepared.clear()
         self._targets.clear()
         with self._context:
-            # Drivers keep what was drawn in last, deleted or not, until something else is.
+            # Drivers keep the last framebuffer, even if deleted, until another is drawn in.
             self._smallest.start((0.0, 0.0, 0.0))
             gl_calls.finish()
             self._context.gc()
@@ -152,7 +152,7 @@ class EglRenderer:
         self._prepared[scene.version] = prepared
         if len(self._prepared) > _VERSIONS_KEPT:
             del self._prepared[next(iter(self._prepared))]
-            self._context.gc()  # what removed models held
+            self._context.gc()  # memory of removed models
             self._store.keep({kind for one in self._prepared.values() for kind in one.kinds})
         return prepared
 
@@ -188,7 +188,7 @@ class EglRenderer:
                      triangles, (plain, shaded), {})
 
     def _within(self, item: _Item, tolerance: float) -> _Item:
-        """The coarsest that is no farther away from it, m."""
+        """The coarsest item whose deviation is at most `tolerance`, m."""
         if tolerance < item.triangles.finest:
             return item
         fitting = [triangles for away, triangles in self._store.coarser(item.triangles)
@@ -202,7 +202,7 @@ class EglRenderer:
 
     def _submit(self, scene: SceneState, prepared: _Prepared, view: CameraView,
                 target: Target, unseen: float) -> None:
-        """`unseen`: px that what is drawn may be away from the mesh."""
+        """`unseen`: px of allowed deviation from the mesh."""
         clip_world = _UPSIDE_DOWN @ projection_matrix(view) @ view_matrix(view.pose)
         eye = np.array([*view.pose.position, 1.0], np.float32)
         prepared.lights.write(eye.tobytes(), offset=lights.EYE_OFFSET)
@@ -254,7 +254,7 @@ def _render(target: Target, node: Node, pieces: list[_Piece], clip_node: np.ndar
 
 
 def _open_context() -> moderngl.Context:
-    """On the first EGL device that works: after a card that refuses comes llvmpipe."""
+    """A context on the first EGL device that works: llvmpipe comes after cards that fail."""
     refusals = []
     for index in range(_MOST_DEVICES):
         try:
@@ -268,7 +268,7 @@ def _open_context() -> moderngl.Context:
 
 def _shadow_places(prepared: _Prepared, nodes: list[Node], seen: Visibility,
                    clip_world: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray]]:
-    """As `Shadows.seen_on`; the shadows are ready to be drawn."""
+    """As `Shadows.seen_on`. Also makes the shadows ready to be drawn."""
     if prepared.shadows is None:
         return {}
     places = prepared.shadows.seen_on(nodes, prepared.outlines.boxes(nodes),
@@ -280,7 +280,7 @@ def _shadow_places(prepared: _Prepared, nodes: list[Node], seen: Visibility,
 
 def _pieces(item: _Item, shadows: tuple[np.ndarray, np.ndarray] | None,
             view: CameraView) -> list[_Piece]:
-    """How to draw a surface, with the rectangles where it is and where shadows can be on it."""
+    """How to draw a surface; `shadows` is its value in `Shadows.seen_on`."""
     if item.shaded is None or shadows is None:
         return [(item, item.plain, None)]
     if not item.surface.triangles.convex:

@@ -7,12 +7,12 @@ import numpy as np
 
 from bullet_sim.pose import Pose
 
-LARGEST_PX = 8192  # longest side of a picture
+LARGEST_PX = 8192  # longest side of an image
 LARGEST_SQUARE_PX = 4096  # side of the largest square one: more takes seconds to draw and send
 
 
 def drawable_size(width: int, height: int, largest_px: int) -> tuple[int, int]:
-    """Size in px of the same shape that is drawn; `largest_px` is a renderer's longest side."""
+    """The size in px, of the same shape, that can be drawn; `largest_px` is a renderer's limit."""
     most = LARGEST_SQUARE_PX ** 2
     shrink = min(1.0, largest_px / max(width, height), math.sqrt(most / (width * height)))
     return max(1, int(width * shrink)), max(1, int(height * shrink))
@@ -37,7 +37,7 @@ class CameraView:
 
 @dataclass(frozen=True)
 class Frame:
-    """One picture, top row first."""
+    """One image, top row first."""
 
     rgb: np.ndarray  # (height, width, 3) uint8, RGB, C-contiguous
     depth: np.ndarray | None  # (height, width) float32, m along the optical axis; inf beyond far

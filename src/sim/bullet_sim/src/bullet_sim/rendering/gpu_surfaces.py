@@ -1,6 +1,6 @@
-"""Triangles and materials on the graphics card, uploaded once for all links that look alike.
+"""Triangles and materials on the graphics card, uploaded once for all links that look the same.
 
-Where half a pixel makes no difference, a mesh is drawn in fewer triangles (`meshes/detail`).
+Where half a pixel makes no difference, a mesh is drawn with fewer triangles (`meshes/detail`).
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ _FOGS = {"linear": LINEAR, "exp": EXP, "exp2": EXP2}
 
 @dataclass(frozen=True)
 class Kind:
-    """Of drawing a surface."""
+    """A kind of drawing a surface."""
 
-    per_pixel: bool  # or lit per corner
+    per_pixel: bool  # else lit per corner
     lights: tuple[tuple[int, int], ...]  # kind, and number of its shadow, -1: none
-    highlight: bool  # whether one can be seen on it
+    highlight: bool  # whether one may be visible on it
     fog: Fog | None = None
     shadows: int = 0  # how many lights cast them
 
@@ -54,14 +54,14 @@ Drawing = tuple[Program, moderngl.VertexArray]
 
 @dataclass(eq=False)
 class Triangles:
-    """Of all parts that have the same."""
+    """The triangles of all parts with equal ones."""
 
     vertices: moderngl.Buffer
     indices: moderngl.Buffer
-    textured: bool  # or the material's colour alone
-    convex: bool  # few, as planes and boxes have, none of them in front of another
-    finest: float  # m, tolerance of the first of the coarser ones, inf: there can be none
-    part: MeshPart | None  # to make those of, when one is needed first
+    textured: bool  # else the material's colour alone
+    convex: bool  # few, as of planes and boxes, none of them in front of another
+    finest: float  # m, tolerance of the first of the coarser ones, inf: there are none
+    part: MeshPart | None  # to make those from, when one is needed first
     coarser: list[tuple[float, Triangles]]  # by tolerance, m, the finest first
     drawings: dict[Kind, Drawing]
 
@@ -79,7 +79,7 @@ class Surface:
 
 
 class SurfaceStore:
-    """Uploads of link shapes, kept as long as some scene has the shape."""
+    """Uploaded link shapes, kept as long as a scene has the shape."""
 
     def __init__(self, context: moderngl.Context, anisotropy: float = 1.0):
         self._context = context
@@ -87,13 +87,13 @@ class SurfaceStore:
         self._surfaces: WeakKeyDictionary[LinkShape, list[Surface]] = WeakKeyDictionary()
         self._triangles: WeakValueDictionary[bytes, Triangles] = WeakValueDictionary()
         self._textures: WeakValueDictionary[str, moderngl.Texture] = WeakValueDictionary()
-        self._unreadable: set[str] = set()  # images that were warned about
+        self._unreadable: set[str] = set()  # images with a warning logged
         self._programs: dict[tuple[Kind, bool], Program] = {}
         self._images: Mapping[str, np.ndarray] = {}
-        self._shown: dict[str, np.ndarray] = {}  # of the images, which is on the card
+        self._shown: dict[str, np.ndarray] = {}  # of the images, the ones on the card
 
     def show(self, images: Mapping[str, np.ndarray]) -> None:
-        """What the textures that are no files look like from now on; see `SceneState.images`."""
+        """Set the images of textures that are not files; see `SceneState.images`."""
         self._images = images
         for name, image in images.items():
             texture = self._textures.get(name)
@@ -112,7 +112,7 @@ class SurfaceStore:
         return surfaces
 
     def coarser(self, triangles: Triangles) -> list[tuple[float, Triangles]]:
-        """By tolerance, m, the finest first; made when they are asked for."""
+        """Coarser triangles by tolerance, m, the finest first; made at first use."""
         if triangles.part is not None:
             triangles.coarser = [
                 (level.tolerance, self._triangles_of(level.part, triangles.textured, False))
@@ -121,7 +121,7 @@ class SurfaceStore:
         return triangles.coarser
 
     def keep(self, kinds: set[Kind]) -> None:
-        """Forget how to draw other kinds."""
+        """Drop the drawings of other kinds."""
         for known in [key for key in self._programs if key[0] not in kinds]:
             del self._programs[known]
         for triangles in self._triangles.values():
@@ -129,7 +129,7 @@ class SurfaceStore:
                 del triangles.drawings[kind]
 
     def drawing(self, triangles: Triangles, kind: Kind) -> Drawing:
-        """How to draw them."""
+        """The program and vertex array for these triangles."""
         found = triangles.drawings.get(kind)
         if found is None:
             program = self._program(kind, triangles.textured)
@@ -175,7 +175,7 @@ class SurfaceStore:
         )
 
     def _triangles_of(self, part: MeshPart, textured: bool, levelled: bool) -> Triangles:
-        """Uploaded once. `levelled`: with coarser ones."""
+        """Triangles of a part, uploaded once. `levelled`: with coarser ones."""
         uv = part.uv if textured else np.zeros((len(part.vertices), 2), np.float32)
         corners = np.concatenate([part.vertices, part.normals, uv], axis=1, dtype=np.float32)
         faces = np.ascontiguousarray(part.faces)
@@ -222,12 +222,12 @@ def _is_convex(part: MeshPart) -> bool:
 
 
 def _rgba(rgb: np.ndarray) -> np.ndarray:
-    """(h, w, 3) uint8, first row first, as OpenGL wants it: with alpha, last row first."""
+    """(h, w, 3) uint8, top row first, converted for OpenGL: with alpha, top row last."""
     return np.ascontiguousarray(cv2.cvtColor(rgb, cv2.COLOR_RGB2RGBA)[::-1])
 
 
 def _material_block(material: Material) -> bytes:
-    """The shader's `Surface` block; a texture is scaled about the image's middle, as by OGRE."""
+    """The shader's `Surface` block; a texture is scaled about the image's centre, as by OGRE."""
     shrink = [1 / scale if scale else 1.0 for scale in material.texture_scale]
     offset = [0.5 - 0.5 * factor for factor in shrink]
     return np.array([

@@ -25,7 +25,7 @@ def warn_once(text: str) -> None:
 
 
 def lights_block(scene: SceneState) -> bytes:
-    """All but the camera's position; lights beyond the eighth are left out."""
+    """Everything but the camera's position; lights beyond the eighth are left out."""
     if len(scene.lights) > MAX_LIGHTS:
         left_out = ", ".join(list(scene.lights)[MAX_LIGHTS:])
         warn_once(f"more than {MAX_LIGHTS} lights; left out: {left_out}")
@@ -38,9 +38,9 @@ def lights_block(scene: SceneState) -> bytes:
 
 def kinds(scene: SceneState,
           casting: Sequence[LightDescription]) -> tuple[tuple[int, int], ...]:
-    """Of each light in the block its kind, and its place among those `casting` shadows; -1: none.
+    """For each light in the block, its kind, and its index among those `casting` shadows; -1: none.
 
-    At least one: what follows in the block is dark.
+    At least one: the rest of the block is dark.
     """
     found = [(_kind(light), casting.index(light) if light in casting else -1)
              for light in _in_block(scene)]
@@ -48,12 +48,12 @@ def kinds(scene: SceneState,
 
 
 def _in_block(scene: SceneState) -> list[LightDescription]:
-    """By kind, so that scenes with the same kinds of lights are drawn by the same shaders."""
+    """Sorted by kind, so that scenes with the same kinds of lights use the same shaders."""
     return sorted(list(scene.lights.values())[:MAX_LIGHTS], key=_kind)
 
 
 def needs_pixels(scene: SceneState) -> bool:
-    """Whether some light is near enough that its strength changes across a face."""
+    """Whether a light is near enough for its intensity to vary across a face."""
     return any(light.type != "directional" for light in scene.lights.values())
 
 
@@ -63,7 +63,7 @@ def strongest_highlight(scene: SceneState) -> float:
 
 
 def light_direction(light: LightDescription) -> np.ndarray:
-    """(3,) unit vector in the world along which it shines; down if it has none of a length."""
+    """(3,) unit vector of its direction in the world; down if the light's has no length."""
     direction = np.array(rotate(light.pose.orientation, light.direction))
     length = np.linalg.norm(direction)
     return direction / length if 0 < length < np.inf else np.array([0.0, 0.0, -1.0])

@@ -1,8 +1,8 @@
-"""Memory of its own for what is large and stays a while: given back as soon as it is free.
+"""Separate memory for large, longer-lived data: returned to the system as soon as it is free.
 
-The C library takes blocks of some MB from its heap, where the environment says so, because that is
-quick for what lasts a moment (see the environment hook of bullet_sim_ros). But freed blocks of what
-lasts leave holes there, which the next do not always fit into: memory goes up and down by them.
+The C library takes blocks of some MB from its heap, if the environment says so, because that is
+fast for short-lived data (see the environment hook of bullet_sim_ros). But freed blocks of
+longer-lived data leave holes there, into which the next ones do not always fit, so memory varies.
 """
 
 import contextlib
@@ -14,7 +14,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-VARIABLE = "MALLOC_MMAP_THRESHOLD_"  # bytes, from which on blocks are none of the heap's
+VARIABLE = "MALLOC_MMAP_THRESHOLD_"  # bytes, from which on blocks are not in the heap
 M_MMAP_THRESHOLD = -3  # mallopt's name of the same, in the GNU library's malloc.h
 LARGE = 1 << 20  # bytes
 
@@ -26,7 +26,7 @@ def own_array(shape: tuple[int, ...]) -> np.ndarray:
 
 @contextlib.contextmanager
 def own_blocks() -> Iterator[None]:
-    """What libraries allocate meanwhile is outside the heap from `LARGE` on."""
+    """Within it, libraries' allocations of at least `LARGE` are outside the heap."""
     threshold = os.environ.get(VARIABLE, "")
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)  # not every C library has it
     if mallopt is None or not threshold.isdecimal():

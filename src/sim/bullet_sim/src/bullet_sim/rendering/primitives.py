@@ -64,7 +64,7 @@ def plane(normal: Vector3, size: tuple[float, float]) -> MeshPart:
 
 
 def cylinder(radius: float, length: float) -> MeshPart:
-    """Along z, centred; the image goes once round the side and lies whole on each end."""
+    """Along z, centred; the image goes once round the side and is whole on each end."""
     turn = np.linspace(0, 2 * math.pi, CYLINDER_SEGMENTS + 1)
     circle = np.stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)], axis=1)
     half = np.array([0, 0, length / 2])

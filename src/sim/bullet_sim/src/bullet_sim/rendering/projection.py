@@ -1,8 +1,8 @@
 """The pinhole camera as matrices.
 
-The optical axis meets the picture in its middle: (width / 2, height / 2) when pixel edges are
-whole numbers, so pixel index ((width - 1) / 2, (height - 1) / 2). A point at (x, y, z) of the
-camera frame (x forward, y left, z up) falls at column (width - 1) / 2 - f y / x and at row
+The optical axis meets the image at its centre: (width / 2, height / 2) if pixel edges are
+integers, so pixel index ((width - 1) / 2, (height - 1) / 2). A point at (x, y, z) of the
+camera frame (x forward, y left, z up) is at column (width - 1) / 2 - f y / x and at row
 (height - 1) / 2 - f z / x, with f the focal length in pixels.
 """
 
@@ -13,7 +13,7 @@ import numpy as np
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView
 
-STRIP = 16  # rows of a picture whose values stay in the processor's cache
+STRIP = 16  # rows of an image whose values fit into the processor's cache
 # Camera frame (x forward, y left, z up) to OpenGL's eye frame (x right, y up, z backward).
 _EYE_FROM_CAMERA = np.array([
     [0.0, -1.0, 0.0, 0.0],
@@ -24,7 +24,7 @@ _EYE_FROM_CAMERA = np.array([
 
 
 def projection_matrix(view: CameraView) -> np.ndarray:
-    """(4, 4) from OpenGL's eye frame to clip space, first picture row at y = +1."""
+    """(4, 4) from OpenGL's eye frame to clip space, first image row at y = +1."""
     focal, near, far = view.focal_length_px, view.near, view.far
     matrix = np.zeros((4, 4))
     matrix[0, 0] = 2 * focal / view.width
@@ -41,10 +41,10 @@ def view_matrix(pose: Pose) -> np.ndarray:
 
 
 def metres_from_depth(depth: np.ndarray, near: float, far: float) -> np.ndarray:
-    """Depth buffer values 0..1 (h, w) to m along the optical axis, float32; inf where nothing was
+    """Depth buffer values 0..1 (h, w) as m along the optical axis, float32; inf where nothing was
     drawn.
 
-    Written with 1 - depth, which is exact where depth is close to 1: no cancellation far away.
+    Uses 1 - depth, which is exact where depth is close to 1: no cancellation far away.
     """
     result = np.empty(depth.shape, np.float32)
     for rows in strips(len(depth)):
@@ -58,5 +58,5 @@ def metres_from_depth(depth: np.ndarray, near: float, far: float) -> np.ndarray:
 
 
 def strips(height: int) -> Iterator[slice]:
-    """A picture's rows, a few at a time: what several passes go over one after another."""
+    """An image's rows, a few at a time, for several passes over each."""
     return (slice(top, top + STRIP) for top in range(0, height, STRIP))

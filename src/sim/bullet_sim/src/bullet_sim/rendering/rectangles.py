@@ -1,7 +1,7 @@
-"""Rectangles of a picture: where boxes in the world appear, in whole pixels, and what is around.
+"""Rectangles of an image: projections of boxes in the world, in whole pixels, and what is around.
 
-They are (2, 2): x y of two corners, -1..1 from side to side. One whose first corner is not below
-the second in both is empty.
+They are (2, 2): x y of two corners, -1..1 from side to side. If the first corner is not below the
+second in both, it is empty.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ def is_empty(rectangles: np.ndarray) -> np.ndarray:
 
 
 def rectangles_of(corners: np.ndarray, clip_world: np.ndarray) -> np.ndarray:
-    """(n, 2, 2): where in the picture boxes with these corners (n, 8, 3) are, cut to it.
+    """(n, 2, 2): rectangles of the image with boxes of these corners (n, 8, 3), clipped to it.
 
-    The bits of a corner's number tell on which of opposite sides it is; with sixteen corners it is
-    what a box sweeps over. `clip_world` (4, 4) is world to clip coordinates of the picture.
+    The bits of a corner's index tell on which of opposite sides it is; sixteen corners are the
+    region over which a box sweeps. `clip_world` (4, 4) is world to clip coordinates of the image.
     """
     clip = corners @ clip_world[:, :3].T + clip_world[:, 3]
     ahead = clip[..., 2] + clip[..., 3]  # not below 0: not behind the near plane
@@ -40,13 +40,13 @@ def rectangles_of(corners: np.ndarray, clip_world: np.ndarray) -> np.ndarray:
 
 
 def _around(clip: np.ndarray) -> np.ndarray:
-    """Of boxes whose corners (n, c, 4) are all before the near plane."""
+    """Of boxes whose corners (n, c, 4) are all in front of the near plane."""
     place = clip[..., :2] / clip[..., 3:]
     return np.stack([place.min(axis=1).clip(-1.0), place.max(axis=1).clip(max=1.0)], axis=1)
 
 
 def _around_ahead(clip: np.ndarray, ahead: np.ndarray) -> np.ndarray:
-    """Of the parts before the near plane of boxes with corners (n, c, 4), `ahead` (n, c) of it."""
+    """Of the parts in front of the near plane, of boxes with corners (n, c, 4); `ahead` (n, c)."""
     edges = _edges(clip.shape[1])
     one, other = clip[:, edges[0]], clip[:, edges[1]]
     cut = (ahead[:, edges[0]] < 0) != (ahead[:, edges[1]] < 0)
@@ -61,17 +61,17 @@ def _around_ahead(clip: np.ndarray, ahead: np.ndarray) -> np.ndarray:
 
 def tiles(places: np.ndarray, extent: np.ndarray, width: int,
           height: int) -> list[tuple[Scissor, bool]]:
-    """`extent` (2, 2) of a picture in rectangles of whole tiles, and whether one of the places
-    (n, 2, 2) is there.
+    """The tiles that `extent` (2, 2) of an image touches, as rectangles of whole tiles, and whether
+    one of the places (n, 2, 2) is in each.
 
-    Tiles are as large as llvmpipe's, which it draws one by one.
+    Tiles have the size of llvmpipe's, which it draws one by one.
     """
     size = np.array([width, height]) / (2 * TILE)
     every = np.concatenate([extent[None], places])
     low = np.floor((every[:, 0] + 1) * size).astype(int).tolist()
     high = np.ceil((every[:, 1] + 1) * size).astype(int).tolist()
     (first_column, first_row), (end_column, end_row) = low[0], high[0]
-    rows = [0] * end_row  # bit c: whether one is in column c
+    rows = [0] * end_row  # bit c of a row: a place is in column c
     for (left, first), (right, last) in zip(low[1:], high[1:], strict=True):
         for row in range(first, min(last, end_row)):
             rows[row] |= (1 << right) - (1 << left)
@@ -85,7 +85,7 @@ def tiles(places: np.ndarray, extent: np.ndarray, width: int,
 
 
 def _runs(values: list[int], start: int) -> list[tuple[int, int, int]]:
-    """Where equal values begin and end, counted from `start`, and the value."""
+    """Start, end and value of each run of equal values; the first index is `start`."""
     found = []
     for value, equal in itertools.groupby(values):
         end = start + len(list(equal))
@@ -96,7 +96,7 @@ def _runs(values: list[int], start: int) -> list[tuple[int, int, int]]:
 
 @functools.cache
 def _edges(corners: int) -> np.ndarray:
-    """(2, n): which corners of a box in so many dimensions edges go between."""
+    """(2, n): the corners at the ends of each edge of a box with so many dimensions."""
     bits = [1 << bit for bit in range(corners.bit_length() - 1)]
     return np.array([(one, one | bit) for bit in bits for one in range(corners)
                      if not one & bit]).T

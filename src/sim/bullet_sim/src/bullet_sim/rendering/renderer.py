@@ -20,19 +20,19 @@ VARIABLE = "BULLET_SIM_RENDERER"
 
 
 class Renderer(Protocol):
-    """Draws a scene. One call at a time; which thread makes it does not matter."""
+    """Draws a scene. One call at a time, from any thread."""
 
-    name: str  # backend and what it runs on, for people
-    largest_px: int  # longest side of a picture
+    name: str  # backend and device, for users
+    largest_px: int  # longest side of an image
 
     def draw(self, scene: SceneState, view: CameraView, depth: bool = False) -> Frame:
-        """One picture, and its depth if wanted; the arrays are the caller's own."""
+        """One image, and its depth if wanted; the arrays are the caller's own."""
         ...
 
     def trim(self) -> None:
-        """Free the memory of pictures and of models that were removed.
+        """Free the memory of images and of removed models.
 
-        The next pictures take anew what they need.
+        The next images allocate it again.
         """
         ...
 
@@ -42,10 +42,10 @@ class Renderer(Protocol):
 
 
 def open_renderer(preference: str | None = None, profiler: Profiler | None = None) -> Renderer:
-    """EGL where it works, else TinyRenderer with a warning.
+    """EGL if it works, else TinyRenderer with a warning.
 
-    `preference`, "egl" or "tiny", or without it BULLET_SIM_RENDERER insists on one; if that one
-    does not work, it is a SimulationError. What drawing costs is added to `stages`.
+    `preference`, "egl" or "tiny", or without it BULLET_SIM_RENDERER, requires that one; if it
+    does not work, it is a SimulationError. The cost of drawing is added to `profiler`.
     """
     profiler = profiler or Profiler()
     chosen = preference or os.environ.get(VARIABLE) or None
@@ -93,7 +93,7 @@ _OPENERS: dict[str, Callable[[Profiler], Renderer]] = {"egl": _open_egl, "tiny":
 
 
 def _seconds_per_frame() -> float:
-    """The quickest of three small pictures of a floor and a box."""
+    """The fastest of three small images of a floor and a box."""
     scene = Scene()
     scene.add_light(LightDescription("sun", type="directional"))
     visuals = (

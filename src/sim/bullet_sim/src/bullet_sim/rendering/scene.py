@@ -29,22 +29,22 @@ log = logging.getLogger(__name__)
 LinkKey = tuple[str, str]  # model, link
 
 _THINNEST = 0.001  # m, of a box: each of its edges has a direction
-# What a surface without any material looks like: a whitish grey.
+# The look of a surface without any material: a whitish grey.
 DEFAULT_MATERIAL = Material(ambient=(0.7, 0.7, 0.7, 1.0), diffuse=(0.7, 0.7, 0.7, 1.0))
 
 
 @dataclass(frozen=True, eq=False)
 class LinkShape:
-    """Everything that links with equal visuals look like; shared by them, compared by identity."""
+    """The look of links with equal visuals; shared by them, compared by identity."""
 
     parts: tuple[MeshPart, ...]  # in the link frame, of one material each
     centre: np.ndarray  # (3,) m, of a sphere around all parts, in the link frame
     radius: float  # m
-    plane_size: float = 0.0  # m, longest side if it is all planes; 0 if not
+    plane_size: float = 0.0  # m, longest side if all parts are planes; 0 if not
 
 
 class Node:
-    """One link in the scene, where it is at one moment."""
+    """One link in the scene, at its pose at one moment."""
 
     __slots__ = ("shape", "pose", "_matrix")
 
@@ -63,20 +63,20 @@ class Node:
 
 @dataclass(eq=False)
 class SceneState:
-    """Lights and links at one moment: what renderers draw. Equal versions differ only in poses."""
+    """Lights and links at one moment: a renderer's input. Equal versions differ only in poses."""
 
     description: SceneDescription
     lights: dict[str, LightDescription]
     nodes: dict[LinkKey, Node]
     version: int
-    # Textures that are no files, by the name that materials call them: (h, w, 3) uint8 RGB, first
-    # row first, never written to. Another array under the same name has the same size.
+    # Textures that are not files, by their name in materials: (h, w, 3) uint8 RGB, top row
+    # first, never written to. Another array under the same name has the same size.
     images: dict[str, np.ndarray] = field(default_factory=dict)
 
     def plane_ranks(self) -> dict[float, int]:
         """Rank by size of the planes that links are made of, the smallest 0.
 
-        Courses lie on the ground plane at the same height: where planes meet, the larger gives way.
+        Courses are on the ground plane, at one height: where planes meet, the larger is behind.
         """
         sizes = sorted({node.shape.plane_size for node in self.nodes.values()} - {0.0})
         return {size: rank for rank, size in enumerate(sizes)}
@@ -86,7 +86,7 @@ _versions = itertools.count()  # over all scenes, so that a version stands for o
 
 
 class Scene(SceneState):
-    """Lights and links by name, as they come, move and go."""
+    """Lights and links by name, which may be added, moved and removed."""
 
     def __init__(self, description: SceneDescription = SceneDescription()):
         super().__init__(description, {}, {}, next(_versions))
@@ -94,7 +94,7 @@ class Scene(SceneState):
         self.visuals: dict[LinkKey, tuple[Visual, ...]] = {}  # of each link
 
     def frozen(self) -> SceneState:
-        """As it is now; another thread may draw it while the scene changes."""
+        """A copy of the current state; another thread may draw it while the scene changes."""
         return SceneState(self.description, dict(self.lights), dict(self.nodes), self.version,
                           dict(self.images))
 
@@ -109,17 +109,17 @@ class Scene(SceneState):
         self.version = next(_versions)
 
     def remove_light(self, name: str) -> None:
-        """No longer drawn; UnknownName without one of that name."""
+        """Remove a light; UnknownName if there is none of that name."""
         if name not in self.lights:
             raise UnknownName("light", name, self.lights)
         del self.lights[name]
         self.version = next(_versions)
 
     def change_light(self, light: LightDescription) -> None:
-        """Give the light of that name other properties; UnknownName without one."""
+        """Change the properties of the light of that name; UnknownName if there is none."""
         if light.name not in self.lights:
             raise UnknownName("light", light.name, self.lights)
-        self.lights[light.name] = light  # in its old place: of too many the last are left out
+        self.lights[light.name] = light  # in its old position: of too many, the last are left out
         self.version = next(_versions)
 
     def add_link(self, key: LinkKey, visuals: Sequence[Visual], pose: Pose) -> None:
@@ -140,11 +140,11 @@ class Scene(SceneState):
         self.version = next(_versions)
 
     def add_visual(self, key: LinkKey, visual: Visual) -> None:
-        """Show one visual more on a link that is there."""
+        """Add a visual to a link that is there."""
         self._put(key, (*self.visuals[key], visual), self.nodes[key].pose)
 
     def remove_model(self, model: str) -> None:
-        """All links of a model; a model without links in the scene is no error."""
+        """Remove all links of a model; a model without links in the scene is no error."""
         for key in [key for key in self.nodes if key[0] == model]:
             del self.nodes[key], self.visuals[key]
             self.version = next(_versions)
@@ -152,19 +152,19 @@ class Scene(SceneState):
     def set_pose(self, key: LinkKey, pose: Pose) -> None:
         """Move a link, pose in the world; UnknownName if it is not in the scene.
 
-        It stays where it was while its pose is not finite: the engine's can be NaN for a moment.
+        It stays in place while its pose is not finite: the engine's may be NaN for a moment.
         """
         node = self.nodes.get(key)
         if node is None:
             raise UnknownName("link", "::".join(key), ("::".join(known) for known in self.nodes))
         if node.pose is pose:
-            return  # what stands still keeps its node, and the matrix in it
+            return  # a link that stands still keeps its node, and the matrix in it
         if math.isfinite(sum((*pose.position, *pose.orientation))):
             self.nodes[key] = Node(node.shape, pose)
 
 
 def link_shape(visuals: Sequence[Visual]) -> LinkShape:
-    """All visuals of a link in the link frame, with parts that look alike joined into one."""
+    """All visuals of a link in the link frame, with parts of equal look joined into one."""
     alike: dict[tuple[Material, bool], list[MeshPart]] = {}
     for visual in visuals:
         for part in _visual_parts(visual):
@@ -202,7 +202,7 @@ def _surface(visual: Visual) -> tuple[MeshPart, ...]:
 
 
 def _placed(part: MeshPart, visual: Visual) -> MeshPart:
-    """In the link frame, with the material that counts: visual's own, else file's, else default."""
+    """In the link frame, with its material: the visual's own, else the file's, else the default."""
     material = visual.material or part.material or DEFAULT_MATERIAL
     if visual.transparency > 0:
         red, green, blue, alpha = material.diffuse

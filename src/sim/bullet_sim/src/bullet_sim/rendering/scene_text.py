@@ -1,13 +1,13 @@
-"""A scene as JSON text and back: what there is to see, for who draws it in another process.
+"""A scene as JSON text and back: the visible content, for drawing in another process.
 
-Every description is an object with its class's name under "is" and its fields, but for plugins:
+Every description is an object with its class's name under "is" and its fields, except plugins:
 
     {"scene": {"is": "SceneDescription", "background": [...], ...},
      "lights": [{"is": "LightDescription", "type": "directional", "pose": {"is": "Pose", ...}}],
      "links": [{"model": "robot", "link": "base", "pose": {...}, "visuals": [{"is": "Visual",
          "geometry": {"is": "Mesh", "path": "/...", "scale": [1, 1, 1]}, "material": {...}}]}]}
 
-Files go by their absolute path; textures that are no files are left out by who draws.
+Files are given by absolute path; a reader leaves out textures that are not files.
 """
 
 import json
@@ -30,7 +30,7 @@ _LEFT_OUT = ("plugins",)
 
 @dataclass(frozen=True)
 class SceneContent:
-    """The content of a text; poses are those at which it was written."""
+    """The content of a text; poses are those at the time of writing."""
 
     description: SceneDescription
     lights: tuple[LightDescription, ...]
@@ -38,7 +38,7 @@ class SceneContent:
 
 
 def scene_to_text(scene: Scene) -> str:
-    """The scene as it is now, in one line."""
+    """The current scene, in one line."""
     links = [{"model": model, "link": link, "pose": _plain(scene.nodes[model, link].pose),
               "visuals": _plain(visuals)} for (model, link), visuals in scene.visuals.items()]
     return json.dumps({"scene": _plain(scene.description),
@@ -47,7 +47,7 @@ def scene_to_text(scene: Scene) -> str:
 
 
 def scene_from_text(text: str) -> SceneContent:
-    """What `scene_to_text` wrote; a FormatError for other texts."""
+    """The content of a text from `scene_to_text`; FormatError for other texts."""
     try:
         read = json.loads(text, object_hook=_object)
         return SceneContent(read["scene"], _tuples(read["lights"]), {
@@ -75,5 +75,5 @@ def _object(read: dict[str, Any]) -> Any:
 
 
 def _tuples(value: Any) -> Any:
-    """Lists as the tuples that descriptions have, which makes equal ones one key."""
+    """Lists as tuples, as in descriptions, so that equal ones are one key."""
     return tuple(_tuples(one) for one in value) if isinstance(value, list) else value

@@ -1,10 +1,10 @@
-"""GLSL of the scene: one source, with the light worked out per corner or per pixel.
+"""GLSL of the scene: one source, with lighting per corner or per pixel.
 
-The fixed pipeline's arithmetic (OpenGL 2.1, 2.14.1): emissive + ambient * scene ambient + sum over
-lights of diffuse and specular, clamped to 1, times the texture. No gamma. A surface without
+The arithmetic of the fixed pipeline (OpenGL 2.1, 2.14.1): emissive + ambient * scene ambient + sum
+over lights of diffuse and specular, clamped to 1, times the texture. No gamma. A surface without
 highlight under directional lights only is lit per corner, which is the same on flat faces and
-leaves little to do for each pixel. Of a light that casts shadows, a pixel then takes the share that
-its map lets through.
+leaves little work per pixel. Of a light that casts shadows, a pixel then gets the share that its
+shadow map lets through.
 """
 
 from collections.abc import Sequence
@@ -26,9 +26,9 @@ def sources(per_pixel: bool, textured: bool, lights: Sequence[tuple[int, int]], 
             fog: bool, shadows: int) -> dict[str, str]:
     """Arguments of moderngl's `program` for one kind of surface.
 
-    `lights`: of each its kind and its shadow's number, -1: none. They are constants there, as
-    llvmpipe works out both branches of all that is decided for each pixel. `highlight`: whether a
-    light has one on it. `shadows`: how many cast.
+    `lights`: the kind of each and its shadow's number, -1: none. They are constants there, as
+    llvmpipe computes both branches of every decision per pixel. `highlight`: whether a light has
+    one on it. `shadows`: how many lights cast them.
     """
     defined = {"MAX_LIGHTS": MAX_LIGHTS, "POINT": POINT, "SPOT": SPOT, "LIGHTS": len(lights)}
     for name, numbers in zip(("KINDS", "CASTS"), zip(*lights, strict=True), strict=True):

@@ -1,4 +1,4 @@
-"""What the shadow map of a light covers, and where in a picture the shadows of its casters fall."""
+"""The region of a light's shadow map, and where its casters' shadows are in an image."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from bullet_sim.rendering.rectangles import NOWHERE, rectangles_of
 
 FINEST = 0.0015  # m, of a texel
 SIDES = (256, 512, 1024, 2048)  # texels, of a map
-MARGIN = 2  # texels that stay free round what casts, so that nothing leaks from the next map
-_STEPS = 8  # of a map's side, in which it follows what moves: between them it need not change
+MARGIN = 2  # texels kept free around casters, so that nothing leaks from the next map
+_STEPS = 8  # of a map's side, by which it follows moving casters: within a step it need not change
 _COARSER = 1.25  # from one size of texels to the next
 _PARALLEL = 1e-6
 _NEAREST = 0.01  # m, from a spot light
@@ -24,24 +24,24 @@ _SIGNS = np.indices((2, 2, 2)).reshape(3, 8) * 2.0 - 1  # of a box's corners, al
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """What the map of one light covers."""
+    """The region of one light's map."""
 
     clip_world: np.ndarray  # (4, 4) from the world to clip coordinates of the map
     side: int  # texels
     grain: float  # m, of a texel; of a spot light at a depth of 1 m
-    source: np.ndarray  # (4,) homogeneous, in the world: where the light comes from
-    # How far lines from the light can be followed, from what casts, in gaps between the two.
+    source: np.ndarray  # (4,) homogeneous, in the world: the light's position or direction
+    # How far rays from the light are followed beyond casters, in distances between the two.
     follow: tuple[float, float]
-    blur: float  # m, by which shadows can be wider than what casts
+    blur: float  # m, by which shadows may be wider than their casters
 
 
 def reach_of(light: LightDescription, every: np.ndarray, fitted: np.ndarray) -> Reach:
-    """Corners (n, 3) in the world of all that casts, and of what the map is fitted to."""
+    """Corners (n, 3) in the world of all casters, and of those that the map is fitted to."""
     return _cone(light, every) if light.type == "spot" else _beam(light, every, fitted)
 
 
 def _beam(light: LightDescription, every: np.ndarray, fitted: np.ndarray) -> Reach:
-    """Of a directional light: a box along it. Its shadows have no end."""
+    """For a directional light: a box along it. Its shadows have no end."""
     axes = _axes(light_direction(light))
     across, along = fitted @ axes[:2].T, every @ axes[2]
     span = np.ptp(across, axis=0).max() / (1 - 1 / _STEPS)
@@ -60,7 +60,7 @@ def _beam(light: LightDescription, every: np.ndarray, fitted: np.ndarray) -> Rea
 
 
 def _cone(light: LightDescription, every: np.ndarray) -> Reach:
-    """Of a spot light: all that it lights, in a pyramid."""
+    """For a spot light: a pyramid with all that it lights."""
     place = np.array(light.pose.position)
     axes = _axes(light_direction(light))
     slope = math.tan(min(light.outer_angle, _WIDEST) / 2)
@@ -81,11 +81,11 @@ def _cone(light: LightDescription, every: np.ndarray) -> Reach:
 
 def shadow_places(reach: Reach, casters: np.ndarray, in_map: np.ndarray, receivers: np.ndarray,
                   clip_world: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Numbers of a caster (k,) and of a receiver (k,), and where the one's shadow can be on it.
+    """Indices of a caster (k,) and of a receiver (k,), and where the former's shadow may be on it.
 
-    That is a rectangle (k, 2, 2) of the picture. Casters and receivers are corners (n, 8, 3) in the
-    world of boxes around them, `in_map` (n, 2, 2) the rectangles of the map where casters are, and
-    `clip_world` (4, 4) is world to clip coordinates of the picture.
+    That is a rectangle (k, 2, 2) of the image. Casters and receivers are corners (n, 8, 3) in the
+    world of boxes around them, `in_map` (n, 2, 2) the rectangles of the map with casters, and
+    `clip_world` (4, 4) is world to clip coordinates of the image.
     """
     # A directional light is followed backwards, too: nothing is cut off before its map begins.
     lit = rectangles_of(receivers, np.diag([1, 1, reach.source[3], 1]) @ reach.clip_world)
@@ -93,7 +93,7 @@ def shadow_places(reach: Reach, casters: np.ndarray, in_map: np.ndarray, receive
     one, other = np.nonzero(meet.all(axis=2))
     start = casters[one]
     ray = start * reach.source[3] - reach.source[:3]  # (k, 8, 3)
-    # From where to where corners' rays are between two sides of the receiver's box, (k, 8, 3).
+    # Start and end of corners' rays between two sides of the receiver's box, (k, 8, 3).
     slanting = ((ray > _PARALLEL).all(axis=1) | (ray < -_PARALLEL).all(axis=1))[:, None]
     sides = np.stack([receivers.min(axis=1), receivers.max(axis=1)])[:, other, None]
     both = (sides - start) / np.where(slanting, ray, 1.0)
@@ -108,25 +108,25 @@ def shadow_places(reach: Reach, casters: np.ndarray, in_map: np.ndarray, receive
     places = rectangles_of(np.concatenate(ends, axis=1), clip_world)
     places[~met] = NOWHERE
     depths = start @ reach.clip_world[3, :3] + reach.clip_world[3, 3]
-    places[depths.min(axis=1) < _NEAREST] = -NOWHERE  # a spot light in the caster's box
+    places[depths.min(axis=1) < _NEAREST] = -NOWHERE  # the spot light is in the caster's box
     return one, other, places
 
 
 def widened(boxes: np.ndarray, by: float) -> np.ndarray:
-    """Corners (n, 8, 3) of boxes that are so many m larger on each side."""
+    """Corners (n, 8, 3) of boxes enlarged by so many m on each side."""
     edges = boxes[:, [4, 2, 1]] - boxes[:, :1]
     return boxes + np.einsum("nij,ic->ncj", edges * by / np.linalg.norm(
         edges, axis=2, keepdims=True), _SIGNS)
 
 
 def _side(extent: float) -> int:
-    """Texels a side of a map of that many m."""
+    """The side, in texels, of a map of that many m."""
     wanted = extent / FINEST + 3 * MARGIN
     return next((side for side in SIDES if side >= wanted), SIDES[-1])
 
 
 def _power(value: float, base: float) -> int:
-    """The least power of the base that is no less."""
+    """The exponent of the least power of the base that is not less."""
     return math.ceil(math.log(value, base) - 1e-9) if value > 0 else 0
 
 

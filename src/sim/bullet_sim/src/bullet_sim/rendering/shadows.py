@@ -1,7 +1,7 @@
-"""Shadows: how far each light that casts them sees, drawn into maps side by side in one texture.
+"""Shadow maps: the depths seen from each light that casts shadows, side by side in one texture.
 
-A map is as large as what casts needs, not as the scene: what is outside it lies in no shadow. Drawn
-into it is what has a shadow that can be in the picture; when that moves, its part of the map is
+A map is as large as its casters need, not as the scene: nothing outside it is in shadow. Only
+casters whose shadow may be in the image are drawn into it; when one moves, its part of the map is
 drawn again. The edges of shadows are smoothed over two texels.
 """
 
@@ -24,8 +24,8 @@ from bullet_sim.rendering.shaders import MAX_LIGHTS, shader
 from bullet_sim.rendering.shadow_reach import Reach, reach_of, shadow_places, widened
 
 MAX_SHADOWS = 4
-_GROUND = 20.0  # m; a wider plane shades what is in a map, which is not widened for it
-_ROUNDING = 16.0  # in `polygon_offset`'s units, that a map's depths are off by
+_GROUND = 20.0  # m; a larger plane casts shadows, but maps are not enlarged for it
+_ROUNDING = 16.0  # in `polygon_offset`'s units: error of a map's depths
 _UNIT_CLIP = np.array([[0.5, 0, 0, 0.5], [0, 0.5, 0, 0.5], [0, 0, 0.5, 0.5], [0, 0, 0, 1]])
 
 
@@ -41,7 +41,7 @@ def casting_lights(scene: SceneState) -> list[LightDescription]:
 
 
 def _casts(light: LightDescription) -> bool:
-    """Lights that shine all round cast none, as in Gazebo."""
+    """Whether it casts shadows; point lights do not, as in Gazebo."""
     return light.cast_shadows and (
         light.type == "directional" or (light.type == "spot" and light.outer_angle > 0))
 
@@ -50,15 +50,15 @@ def _casts(light: LightDescription) -> bool:
 class _Caster:
     """The surfaces of a node that cast shadows."""
 
-    node: int  # its number in the scene
+    node: int  # its index in the scene
     boxes: np.ndarray  # (k, 4, 8) homogeneous corners of boxes around them, in the node's frame
-    parts: list[int]  # number in the scene of the part that each box belongs to
-    ground: bool  # a plane so wide that maps are not made for it
+    parts: list[int]  # index in the scene of the part to which each box belongs
+    ground: bool  # a plane so large that maps are not made for it
     arrays: list[moderngl.VertexArray]
 
 
 class ShadowPass:
-    """What draws maps; one for all scenes."""
+    """Draws maps; one for all scenes."""
 
     def __init__(self, context: moderngl.Context):
         self.context = context
@@ -83,7 +83,7 @@ class ShadowPass:
         return Shadows(self, lights, casters, convex) if lights and casters else None
 
     def _array(self, part: MeshPart) -> moderngl.VertexArray:
-        """Its triangles, with each place only once, whatever the normals are there."""
+        """Its triangles, with each vertex position once, whatever the normals are."""
         kept, numbers = equal_rows(part.vertices)
         places = part.vertices[kept]
         return self.context.vertex_array(
@@ -99,24 +99,24 @@ class Shadows:
         self.lights = lights
         self._pass = drawing
         self._casters = casters
-        self._convex = convex  # (parts of the scene,), which have no shadow of their own on them
+        self._convex = convex  # (parts of the scene,), which cast no shadow on themselves
         self._parts = np.concatenate([caster.parts for caster in casters])
         self._owner = np.repeat(np.arange(len(casters)), [len(one.boxes) for one in casters])
         self._fitted = np.array([not caster.ground for caster in casters])[self._owner]
         self._block = drawing.context.buffer(reserve=80 * len(lights), dynamic=True)
         self._side = 0
-        self._standing: list[Node] = []  # the casters' nodes as the reaches have them
+        self._standing: list[Node] = []  # the casters' nodes as in the reaches
         self._reaches: list[Reach] = []
         self._wanted: list[Node | None] = []  # the casters' nodes that should be in the maps
-        self._drawn: list[Node | None] = []  # and that are
+        self._drawn: list[Node | None] = []  # and those that are
         self._areas: np.ndarray  # (lights, casters, 2, 2) px, of the maps, where they are
 
     def seen_on(self, nodes: Sequence[Node], boxes: np.ndarray, seen: np.ndarray,
                 clip_world: np.ndarray) -> dict[int, tuple[np.ndarray, np.ndarray]]:
-        """The rectangle (2, 2) of the picture where a part is, and those (k, 2, 2) where shadows
-        can be on it, by its number.
+        """The rectangle (2, 2) of the image that a part is in, and those (k, 2, 2) that contain the
+        shadows on it, by its index.
 
-        Boxes (n, 8, 3) are around the scene's parts, and `seen` (n,) are in the picture.
+        Boxes (n, 8, 3) are around the scene's parts, and `seen` (n,) are in the image.
         """
         self._follow([nodes[caster.node] for caster in self._casters])
         parts = np.flatnonzero(seen)
@@ -127,7 +127,7 @@ class Shadows:
         other = parts[other]
         there = ~is_empty(places) & ~((self._parts[one] == other) & self._convex[other])
         casting = np.isin(np.arange(len(self._casters)), self._owner[one[there]])
-        # What another camera's picture needs stays: its shadows cannot be in this one.
+        # Casters for another camera's image stay: their shadows cannot be in this one.
         self._wanted = [node if casts or drawn is node else None for node, casts, drawn in
                         zip(self._standing, casting, self._drawn, strict=True)]
         shaded = np.unique(other[there])
@@ -136,7 +136,7 @@ class Shadows:
                 for part, extent in zip(shaded.tolist(), extents, strict=True)}
 
     def use(self) -> None:
-        """Let surfaces that are drawn next have these shadows, as of the last `seen_on`."""
+        """Let the surfaces drawn next have these shadows, as of the last `seen_on`."""
         changed = [new is not old for new, old in zip(self._wanted, self._drawn, strict=True)]
         if any(changed):
             self._draw(np.array(changed))
@@ -164,7 +164,7 @@ class Shadows:
             self._begin()
 
     def _begin(self) -> None:
-        """Empty maps."""
+        """Start with empty maps."""
         side = max(reach.side for reach in self._reaches)
         if side != self._side:
             self._side = side
@@ -188,7 +188,7 @@ class Shadows:
         self._block.write(block.tobytes())
 
     def _draw(self, changed: np.ndarray) -> None:
-        """Draw again where casters that changed were and are."""
+        """Draw again where changed casters were and are."""
         context, side = self._pass.context, self._side
         context.enable_only(moderngl.DEPTH_TEST)
         context.polygon_offset = (0.0, _ROUNDING)
@@ -213,7 +213,7 @@ class Shadows:
         self._drawn = self._wanted
 
     def _areas_of(self, number: int) -> np.ndarray:
-        """(casters, 2, 2) px: in which part of a light's map each is drawn; empty if it is not."""
+        """(casters, 2, 2) px: the part of a light's map where each is drawn; empty if it is not."""
         places = (self._in_map[number] + 1) / 2 * self._reaches[number].side
         areas = np.empty((len(self._casters), 2, 2), int)
         areas[:, 0], areas[:, 1] = self._side, 0

@@ -1,4 +1,4 @@
-"""The sky of a scene that has one: a gradient behind everything, by how high a pixel looks."""
+"""The sky of a scene that has one: a gradient behind everything, by a pixel's elevation."""
 
 import moderngl
 
@@ -11,7 +11,7 @@ ZENITH = (0.30, 0.50, 0.80)
 
 
 class Sky:
-    """Draws into what the present framebuffer has left free. Rows are first row first."""
+    """Draws where the current framebuffer is still empty. Rows are top first."""
 
     def __init__(self, context: moderngl.Context):
         self._context = context
@@ -21,7 +21,7 @@ class Sky:
         self._array = context.vertex_array(self._program, [])
 
     def draw(self, view: CameraView) -> None:
-        """After what is opaque, before what is not."""
+        """Draw it, after opaque surfaces and before others."""
         axes = view.pose.matrix()[:3, :3]
         focal_px = view.focal_length_px
         self._program["forward"] = tuple(axes[:, 0])

@@ -1,8 +1,8 @@
-"""The fallback where OpenGL does not start: PyBullet's TinyRenderer, slow, with the same cameras.
+"""The fallback if OpenGL does not work: PyBullet's TinyRenderer, slow, with the same cameras.
 
-One directional light, no filtering of textures, no blending, no fog, no sky, no textures but files;
-what glows only has the colour of it.
-It has a physics client of its own that never steps: bodies without mass stand where links are.
+One directional light, no filtering of textures, no blending, no fog, no sky, only textures in
+files; emissive surfaces just have that colour.
+It has its own physics client that never steps: bodies without mass stand where links are.
 """
 
 import logging
@@ -24,18 +24,18 @@ from bullet_sim.rendering.scene import LinkKey, LinkShape, SceneState
 
 log = logging.getLogger(__name__)
 
-# PyBullet takes 8 MiB a call; so many triangles with corners of their own stay well below.
+# PyBullet takes 8 MiB per call; so many triangles with unshared corners stay well below.
 _TRIANGLES_PER_BODY = 20_000
 _RECESS = 0.002  # m, of a plane behind the next smaller one; depth is no finer near the horizon
 
-_Placed = tuple[LinkKey, LinkShape]  # a link as it looks; the same link may come again otherwise
+_Placed = tuple[LinkKey, LinkShape]  # a link with its look; the same link may be there with another
 
 
 class TinyRenderer:
     """See `renderer.Renderer`."""
 
     name = "PyBullet's TinyRenderer"
-    largest_px = LARGEST_PX  # with much more it ends the whole process
+    largest_px = LARGEST_PX  # with much more, it ends the whole process
 
     def __init__(self, profiler: Profiler | None = None) -> None:
         self._profiler = profiler or Profiler()
@@ -65,20 +65,20 @@ class TinyRenderer:
             metres = metres_from_depth(
                 np.reshape(raw, (height, width)).astype(np.float32), view.near, view.far
             )
-            background = metres > view.far * 0.99  # TinyRenderer's depth of nothing is nearly `far`
+            background = metres > view.far * 0.99  # TinyRenderer's background depth is nearly `far`
             colour = np.array(scene.description.background[:3]) * 255 + 0.5
             rgb[background] = np.clip(colour, 0, 255)
             metres[background] = np.inf
         return Frame(rgb, metres if depth else None)
 
     def trim(self) -> None:
-        """It keeps only the last picture's, and what there was to see in that."""
+        """It only keeps the last image's memory, and the bodies visible in that."""
 
     def close(self) -> None:
         self._client.disconnect()
 
     def _mirror(self, scene: SceneState) -> None:
-        """Bring the client's bodies in line with the scene."""
+        """Make the client's bodies match the scene."""
         current = {(key, node.shape): node.pose for key, node in scene.nodes.items()}
         if scene.version != self._version:
             for placed in [placed for placed in self._bodies if placed not in current]:
@@ -137,7 +137,7 @@ class TinyRenderer:
 
 
 def _pieces(part: MeshPart) -> Iterator[MeshPart]:
-    """The part itself, or pieces with corners of their own if it is too large for one call."""
+    """The part itself, or pieces with their own corners if it is too large for one call."""
     if len(part.faces) <= _TRIANGLES_PER_BODY:
         yield part
         return
@@ -176,7 +176,7 @@ def _light(scene: SceneState) -> dict:
 
 
 def _half_pixel(view: CameraView) -> np.ndarray:
-    """TinyRenderer takes a pixel's corner for its middle: a shift makes up for it."""
+    """TinyRenderer takes a pixel's corner for its centre: a shift corrects that."""
     shift = np.eye(4)
     shift[0, 3], shift[1, 3] = -1 / view.width, -1 / view.height
     return shift

@@ -1,4 +1,4 @@
-"""What of a scene can be in the picture, and in which order to draw it."""
+"""Finds the parts of a scene that may be in the image, and the order in which to draw them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,11 +11,11 @@ from bullet_sim.rendering.scene import LinkShape, Node
 
 @dataclass(frozen=True)
 class Visibility:
-    """Of one picture; row i of an array belongs to the scene's node i."""
+    """For one image; row i of an array belongs to the scene's node i."""
 
     clip_node: np.ndarray  # (n, 4, 4), node frame to clip coordinates
-    parts: list[np.ndarray]  # for each node, whether each of its parts can be seen
-    depths: list[np.ndarray]  # and how far before the camera its nearest corner is, m
+    parts: list[np.ndarray]  # for each node, whether each of its parts may be visible
+    depths: list[np.ndarray]  # m, of each of these parts' nearest corner from the camera
     order: list[int]  # nodes, nearest first; of those around the camera, small first
 
 
@@ -37,7 +37,7 @@ class Outlines:
         clip_node = clip_world @ world_node
         clip = clip_node[self._owner] @ self._corners
         axes, w = clip[:, :3], clip[:, 3:]
-        # Outside if all corners are beyond one and the same side of the view.
+        # Outside if all corners are beyond the same side of the view.
         outside = (axes < -w).all(axis=2) | (axes > w).all(axis=2)
         parts = self.by_node(~outside.any(axis=1))
         depths = self.by_node(clip[:, 3].min(axis=1))
@@ -53,5 +53,5 @@ class Outlines:
         return (world_node[self._owner] @ self._corners)[:, :3].swapaxes(1, 2)
 
     def by_node(self, of_parts: np.ndarray) -> list[np.ndarray]:
-        """What there is one of for each part, as an array for each node."""
+        """Splits a value per part into an array for each node."""
         return np.split(of_parts, self._ends)

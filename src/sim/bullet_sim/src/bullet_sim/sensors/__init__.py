@@ -1,1 +1,1 @@
-"""Pure reads of the world: each sensor samples into a frozen reading."""
+"""Sensors only read the world: each returns a frozen reading."""

@@ -1,4 +1,4 @@
-"""A camera on a link: colour pictures, and depth along the optical axis."""
+"""A camera on a link: colour images, and depth along the optical axis."""
 
 import logging
 import math
@@ -22,7 +22,7 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class CaptureState:
-    """All that a picture is made from, as it was at one moment. Nothing in it changes."""
+    """All that an image is made from, as it was at one moment. It never changes."""
 
     time: float  # s, simulated
     tick: int
@@ -32,7 +32,7 @@ class CaptureState:
 
 @dataclass(frozen=True)
 class CameraReading:
-    """One picture, top row first."""
+    """One image, top row first."""
 
     time: float  # s, simulated
     rgb: np.ndarray  # (height, width, 3) uint8, RGB
@@ -42,8 +42,8 @@ class CameraReading:
 class Camera:
     """Gazebo's camera sensor: looks along +x of its sensor frame, z up.
 
-    A `<distortion>` bends the colours, not the depth, which stays a pinhole's.
-    FormatError without a <camera>, and for a picture that cannot be drawn.
+    A `<distortion>` distorts the colours, not the depth, which stays a pinhole's.
+    FormatError without a <camera>, and for an image that cannot be drawn.
     """
 
     def __init__(self, world: World, link: Link, sensor: SensorDescription, renderer: Renderer,
@@ -67,23 +67,23 @@ class Camera:
         self._lens: WideLens | None = None
 
     def view(self) -> CameraView:
-        """The pinhole at its present pose."""
+        """The pinhole camera at its current pose."""
         camera = self.description
         return CameraView(camera.width, camera.height, camera.horizontal_fov, camera.near,
                           camera.far, self._link.pose * self._sensor.pose * camera.pose)
 
     def sample(self, depth: bool = False) -> CameraReading:
-        """Draw what the camera sees."""
+        """Draw the current image."""
         return self.render(self.capture(), depth)
 
     def capture(self) -> CaptureState:
-        """What the camera sees, not yet drawn. For the thread that owns the world."""
+        """The state for an image, not yet drawn. For the thread that owns the world."""
         world = self._world
         with world.profiler.measure("scene"):
             return CaptureState(world.time, world.tick, world.update_scene().frozen(), self.view())
 
     def render(self, state: CaptureState, depth: bool = False) -> CameraReading:
-        """Draw a captured state. Any thread may do it, one at a time, while the world steps.
+        """Draw a captured state, from any thread, one at a time, even while the world steps.
 
         A wide-angle camera has no depth.
         """
@@ -120,14 +120,14 @@ class Camera:
 
 
 def _drawable(camera: CameraDescription, renderer: Renderer, where: str) -> CameraDescription:
-    """The same, its picture smaller where it is too large to be drawn, and a line in the log."""
+    """The same, with a smaller image if it is too large to be drawn, and a line in the log."""
     width, height = camera.width, camera.height
     if min(width, height) < 1:
         return camera
     drawn = drawable_size(width, height, renderer.largest_px)
     if drawn == (width, height):
         return camera
-    log.warning("%s: an image of %dx%d px is not drawn, at most %d a side and %dx%d in all are; "
+    log.warning("%s: an image of %dx%d px is not drawn, at most %d per side and %dx%d in all; "
                 "%dx%d is used", where, width, height, renderer.largest_px,
                 LARGEST_SQUARE_PX, LARGEST_SQUARE_PX, *drawn)
     return replace(camera, width=drawn[0], height=drawn[1])

@@ -1,4 +1,4 @@
-"""Contact sensor: what the collisions of a link touch, pair by pair."""
+"""Contact sensor: the collisions that touch a link's, pair by pair."""
 
 import logging
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ ALL = ("", "__default__")  # of a sensor that names no collision
 
 @dataclass
 class TouchingPair:
-    """Two collisions that touch; the lists run in parallel, world axes, one entry a point."""
+    """Two collisions that touch; parallel lists, world axes, one entry per point."""
 
     own: str  # model::link::collision
     other: str
@@ -29,9 +29,9 @@ class TouchingPair:
 
 
 class ContactSensor:
-    """`<contact><collision>` names the collisions; a sensor that names none covers all of its link.
+    """`<contact><collision>` names the collisions; a sensor without any covers all of its link.
 
-    Where several are named they need not be of this link: `model::link::collision` is any.
+    If several are named, they may be of other links: `model::link::collision` is any.
     """
 
     def __init__(self, world: World, link: Link, description: SensorDescription):

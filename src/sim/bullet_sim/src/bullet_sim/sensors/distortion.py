@@ -1,4 +1,4 @@
-"""Bends the picture of a pinhole as a real lens does: Brown's model, as in OpenCV and camera_info.
+"""Distorts a pinhole image as a real lens does: Brown's model, as in OpenCV and camera_info.
 
 With x, y the pinhole's coordinates over the focal length and r^2 = x^2 + y^2, a point is seen at
 x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), and y likewise with p1, p2 swapped.
@@ -10,31 +10,31 @@ import numpy as np
 from bullet_sim.description import CameraDescription
 
 _ITERATIONS = 40
-_CLOSE_PX = 0.5  # where going there and back ends farther away, the model has no way back
-_OUTSIDE = -2.0  # px; a place that shows nothing
+_CLOSE_PX = 0.5  # if inverting and applying it ends farther away, the model has no inverse there
+_OUTSIDE = -2.0  # px; a position that shows nothing
 
 
 class Distortion:
-    """What `<distortion>` does to pictures of one camera."""
+    """The `<distortion>` of one camera's images."""
 
     def __init__(self, camera: CameraDescription, focal_length_px: float, crop: bool):
-        """With `crop` a barrel picture (k1 < 0) is enlarged until its black border is gone.
+        """With `crop` a barrel image (k1 < 0) is enlarged until its black border is gone.
 
-        Cropped, it no longer agrees with its coefficients (gazebo_ros_camera_utils.cpp, Init).
+        Cropped, it no longer matches its coefficients (gazebo_ros_camera_utils.cpp, Init).
         """
         size = np.array([camera.width, camera.height], float)
-        self._centre = np.array(camera.distortion_centre) * size - 0.5  # index of a pixel
+        self._centre = np.array(camera.distortion_centre) * size - 0.5  # as pixel index
         self._focal_px = focal_length_px
         self._coefficients = np.array(camera.distortion)
         scale = self._cropped(size) if crop and camera.distortion[0] < 0 else np.ones(2)
         self._maps = self._source_of_each_pixel(camera.width, camera.height, scale)
 
     def apply(self, rgb: np.ndarray) -> np.ndarray:
-        """A bent copy of an (h, w, 3) uint8 picture; black where it shows nothing."""
+        """A distorted copy of an (h, w, 3) uint8 image; black where it shows nothing."""
         return cv2.remap(rgb, *self._maps, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT)
 
     def seen_at(self, pixels: np.ndarray) -> np.ndarray:
-        """Where points are seen: (n, 2) columns and rows of the pinhole's picture, and of ours."""
+        """Where points of the pinhole image are seen: (n, 2) columns and rows, before and after."""
         x, y = ((pixels - self._centre) / self._focal_px).T
         k1, k2, p1, p2, k3 = self._coefficients
         square = x * x + y * y
@@ -44,7 +44,7 @@ class Distortion:
         return bent * self._focal_px + self._centre
 
     def _cropped(self, size: np.ndarray) -> np.ndarray:
-        """How much of width and height lies between the bent corners of the picture."""
+        """The distance between the distorted corners of the image, relative to width and height."""
         first, last = self.seen_at(np.array([[-0.5, -0.5], size - 0.5]))
         return np.clip((last - first) / size, 0.05, 1.0)
 

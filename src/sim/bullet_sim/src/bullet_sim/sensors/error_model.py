@@ -1,4 +1,4 @@
-"""How hector_gazebo's sensors err: a scale, a constant offset, a slow drift, and white noise."""
+"""The errors of hector_gazebo's sensors: scale, constant offset, slow drift, and white noise."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ HOUR = 3600.0  # s, time constant of a drift unless a file gives another
 
 @dataclass(frozen=True)
 class ErrorParameters:
-    """One value for each component, in the reading's own unit where no other is named."""
+    """One value for each component, in the reading's unit unless another one is named."""
 
     offset: tuple[float, ...]
     drift: tuple[float, ...]  # standard deviation of the drift
@@ -24,17 +24,17 @@ class ErrorParameters:
 
     @staticmethod
     def none(size: int) -> ErrorParameters:
-        """A sensor of so many components that makes no error."""
+        """A sensor with so many components and no errors."""
         zeros = (0.0,) * size
         return ErrorParameters(zeros, zeros, (1.0 / HOUR,) * size, zeros, (1.0,) * size)
 
 
 class ErrorModel:
-    """value x scale + offset + drift + noise; all drawn by seed, name and tick.
+    """value x scale + offset + drift + noise; all random numbers follow from seed, name and tick.
 
-    The drift is a Gauss-Markov process whose deviation stays `drift` at any rate of updates (that
-    of SensorModel_::update in hector_gazebo_plugins' sensor_model.h shrinks with the rate). It
-    starts with a value drawn with that deviation.
+    The drift is a Gauss-Markov process whose deviation is `drift` at any update rate (in
+    SensorModel_::update in hector_gazebo_plugins' sensor_model.h it shrinks with the rate). Its
+    first value is drawn with that deviation.
     """
 
     def __init__(self, world: World, name: str, parameters: ErrorParameters):
@@ -43,26 +43,26 @@ class ErrorModel:
         self.restart()
 
     def restart(self) -> None:
-        """Draw a new drift to begin with."""
+        """Draw a new initial drift."""
         random = self._world.random(f"{self._name} start")
         self.drift = random.normal(0.0, self.parameters.drift)
 
     def set_drift(self, drift: np.ndarray) -> None:
-        """Go on from this drift, (components,)."""
+        """Continue from this drift, (components,)."""
         self.drift = np.array(drift, dtype=float)
 
     @property
     def drifts(self) -> bool:
-        """Whether it changes also between readings."""
+        """Whether it also changes between readings."""
         return any(self.parameters.drift) or bool(self.drift.any())
 
     @property
     def bias(self) -> np.ndarray:
-        """Offset and drift as they are now, (components,)."""
+        """The current offset plus drift, (components,)."""
         return self.drift + self.parameters.offset
 
     def update(self, elapsed: float) -> np.ndarray:
-        """Go on by some time (s) and return the additive error of this tick, (components,)."""
+        """Advance by some time (s) and return the additive error of this tick, (components,)."""
         p = self.parameters
         drifts, noisy = self.drifts, any(p.gaussian_noise)
         if drifts:
@@ -80,9 +80,9 @@ class ErrorModel:
 
 
 def attitude_error(bias: np.ndarray, yaw: float, gravity: float) -> tuple[float, ...]:
-    """Unit quaternion, in world axes, by which an accelerometer's bias misleads about level.
+    """Unit quaternion, in world axes, of the level error caused by an accelerometer's bias.
 
-    `bias` is in world axes and m/s^2, `gravity` a length in m/s^2 (0: no error), `yaw` in rad.
+    `bias` is in world axes, m/s^2; `gravity` a magnitude, m/s^2 (0: no error); `yaw` in rad.
     """
     tilt = (0.0, 0.0) if gravity == 0.0 else (0.5 * bias[1] / gravity, -0.5 * bias[0] / gravity)
     length = math.hypot(1.0, *tilt)

@@ -12,7 +12,7 @@ ECCENTRICITY_2 = FLATTENING * (2.0 - FLATTENING)
 
 @dataclass(frozen=True)
 class GeoReference:
-    """The place on Earth of the world's origin."""
+    """The location on Earth of the world's origin."""
 
     latitude_deg: float
     longitude_deg: float
@@ -20,7 +20,7 @@ class GeoReference:
     heading: float  # rad, compass direction of the world's x axis: 0 north, pi/2 east
 
     def north_west_up(self, vector: Vector3) -> Vector3:
-        """A vector in the world's axes, turned."""
+        """A vector in the world's axes, rotated to north, west and up."""
         x, y, z = vector
         s, c = math.sin(self.heading), math.cos(self.heading)
         return (c * x + s * y, -s * x + c * y, z)
@@ -28,8 +28,8 @@ class GeoReference:
     def geodetic(self, position: Vector3) -> Vector3:
         """Latitude, longitude in degrees and altitude in m of a point near the origin.
 
-        To the first order in the distance, as in hector's gazebo_ros_gps.cpp, Update: 1 km away it
-        is 0.1 m off.
+        To first order in the distance, as in hector's gazebo_ros_gps.cpp, Update: 0.1 m off at a
+        distance of 1 km.
         """
         north, west, up = self.north_west_up(position)
         squeeze = 1.0 / (1.0 - ECCENTRICITY_2 * math.sin(math.radians(self.latitude_deg)) ** 2)

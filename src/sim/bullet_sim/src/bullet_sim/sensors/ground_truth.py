@@ -1,4 +1,4 @@
-"""Ground truth: pose and twist of a link as the world has them, seen from another frame."""
+"""Ground truth: true pose and twist of a link, relative to another frame."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from bullet_sim.world import World
 
 @dataclass(frozen=True)
 class GroundTruthReading:
-    """Pose and twist of a frame's origin, both in the axes of the frame it is seen from."""
+    """Pose and twist of a frame's origin, both in the axes of the reference frame."""
 
     time: float  # s, simulated
     pose: Pose
@@ -18,13 +18,13 @@ class GroundTruthReading:
 
 
 class GroundTruth:
-    """A frame fixed to a link at `offset` (m, rad), seen from another link or from the world."""
+    """A frame fixed to a link at `offset` (m, rad), relative to another link or to the world."""
 
     def __init__(self, world: World, link: Link, offset: Pose, reference: Link | None = None):
         self._world, self._link, self._offset, self._reference = world, link, offset, reference
 
     def sample(self) -> GroundTruthReading:
-        """Where it is now, and how it moves."""
+        """The current pose and twist."""
         pose = self._link.pose * self._offset
         twist = shifted_twist(self._link.twist, self._link.pose.position, pose.position)
         if self._reference is None:

@@ -14,7 +14,7 @@ from bullet_sim.world import World
 
 @dataclass(frozen=True)
 class ImuReading:
-    """In the axes of the sensor, with gravity and noise; unlike a LinkMotionReading."""
+    """In the axes of the sensor, with gravity and noise, unlike a LinkMotionReading."""
 
     time: float  # s, simulated
     orientation: Quaternion  # sensor in the reference frame, by default the world
@@ -44,7 +44,7 @@ class ImuSensor:
         self._last: tuple[float, Vector3] | None = None
 
     def sample(self) -> ImuReading:
-        """The acceleration is the mean one since the last sample; of the first, gravity alone."""
+        """The acceleration is the mean since the last sample; at first, gravity alone."""
         link_pose = self._link.pose
         pose, time = link_pose * self._mount, self._world.time
         twist = shifted_twist(self._link.twist, link_pose.position, pose.position)

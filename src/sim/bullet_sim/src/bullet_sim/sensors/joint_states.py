@@ -1,4 +1,4 @@
-"""Positions and rates of named joints at one moment."""
+"""Positions and velocities of named joints at one time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -17,7 +17,7 @@ class LaserReading:
 
     time: float  # s, simulated
     ranges: np.ndarray  # (n,) float32 m; inf: nothing hit, -inf: nearer than range_min
-    intensities: np.ndarray  # (n,) float32, laser_retro of what was hit
+    intensities: np.ndarray  # (n,) float32, laser_retro of the link that was hit
     angle_min: float  # rad
     angle_max: float  # rad, direction of the last beam
     range_min: float  # m
@@ -26,9 +26,9 @@ class LaserReading:
 
 
 class Laser:
-    """Gazebo's ray sensor; its noise does not turn a hit into a miss, nor a miss into a hit.
+    """Gazebo's ray sensor; its noise does not turn a hit into a miss, or a miss into a hit.
 
-    FormatError of rays that cannot be.
+    FormatError for impossible rays.
     """
 
     def __init__(self, world: World, link: Link, description: SensorDescription):
@@ -47,7 +47,7 @@ class Laser:
         return np.where(distances <= ray.range_min, -np.inf, ranges), retro
 
     def sample(self) -> LaserReading:
-        """Cast all beams from where the sensor is now."""
+        """Cast all beams from the sensor's current pose."""
         ray = self.ray
         ranges, retro = self.measure()
         return LaserReading(

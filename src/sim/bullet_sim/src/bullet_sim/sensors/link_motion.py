@@ -1,4 +1,4 @@
-"""The true motion of a link in world axes: orientation, rate of turn, acceleration."""
+"""The true motion of a link in world axes: orientation, angular velocity, acceleration."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from bullet_sim.world import World
 
 @dataclass(frozen=True)
 class LinkMotionReading:
-    """Of the link's origin, in world axes, without gravity and noise; not what an IMU reads."""
+    """Of the link's origin, in world axes, without gravity and noise; not an IMU's reading."""
 
     time: float  # s, simulated
     orientation: Quaternion  # link in the world
@@ -18,7 +18,7 @@ class LinkMotionReading:
 
 
 class LinkMotion:
-    """Samples a link; IMU plugins turn the readings into their axes and add noise."""
+    """Samples a link; IMU plugins rotate the readings into their axes and add noise."""
 
     def __init__(self, world: World, link: Link):
         self._world = world

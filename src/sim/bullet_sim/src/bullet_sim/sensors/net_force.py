@@ -1,4 +1,4 @@
-"""Net force and torque on a link, by Newton and Euler from how its momentum changes."""
+"""Net force and torque on a link, by Newton and Euler from the change of its momentum."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from bullet_sim.world import World
 
 
 class NetForce:
-    """World axes, the torque about the centre of mass; means since the last sample."""
+    """World axes, torque about the centre of mass; means since the last sample."""
 
     def __init__(self, world: World, link: Link):
         self._world, self._link = world, link

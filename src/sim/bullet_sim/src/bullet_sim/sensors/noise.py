@@ -11,7 +11,7 @@ KINDS = ("gaussian", "gaussian_quantized")
 
 
 class SensorNoise:
-    """Noise of one sensor, with its biases, which are drawn once for a seed and a name."""
+    """Noise of one sensor, with its biases, which are drawn once per seed and name."""
 
     def __init__(self, world: World, name: str, noises: Sequence[Noise]):
         """`noises` has one entry for each component of a reading, or a single one for all."""

@@ -1,4 +1,4 @@
-"""Odometry: where a robot is, by the truth of the world or by counting its wheels."""
+"""Odometry: a robot's pose, from the world's truth or from its wheels."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from bullet_sim.world import World
 
 @dataclass(frozen=True)
 class OdometryReading:
-    """Base seen from the odometry frame; speeds in the base's heading."""
+    """Pose of the base in the odometry frame; speeds in the base's heading."""
 
     time: float  # s, simulated
     pose: Pose
@@ -20,9 +20,9 @@ class OdometryReading:
 
 
 def true_odometry(world: World, model: Model) -> OdometryReading:
-    """The model frame in the world; speeds turned by yaw alone.
+    """The model frame in the world; speeds rotated by yaw alone.
 
-    gazebo_ros_diff_drive.cpp, publishOdometry.
+    As gazebo_ros_diff_drive.cpp, publishOdometry.
     """
     pose, twist = model.pose, model.twist
     heading = quaternion_from_rpy(0.0, 0.0, -pose.rpy()[2])
@@ -40,13 +40,13 @@ class WheelOdometry:
         self.restart(0.0)
 
     def restart(self, time: float) -> None:
-        """Forget the way that was driven."""
+        """Forget the distance driven."""
         self._x = self._y = self._yaw = 0.0
         self._time = time
         self._speed = self._yaw_rate = 0.0
 
     def update(self, time: float, left_rate: float, right_rate: float) -> None:
-        """Wheel rates (rad/s) since the last update."""
+        """Wheel velocities (rad/s) since the last update."""
         elapsed = time - self._time
         self._time = time
         if elapsed <= 0:
@@ -56,11 +56,11 @@ class WheelOdometry:
         self._x += way * math.cos(self._yaw + turn / 2)
         self._y += way * math.sin(self._yaw + turn / 2)
         self._yaw += turn
-        # gazebo_ros_diff_drive reports the length of the way, so driving back is positive too.
+        # gazebo_ros_diff_drive reports the length of the way, so backwards is positive, too.
         self._speed = (way if self._signed else abs(way)) / elapsed
         self._yaw_rate = turn / elapsed
 
     def sample(self) -> OdometryReading:
-        """The present estimate."""
+        """The current estimate."""
         pose = Pose((self._x, self._y, 0.0), quaternion_from_rpy(0.0, 0.0, self._yaw))
         return OdometryReading(self._time, pose, self._speed, 0.0, self._yaw_rate)

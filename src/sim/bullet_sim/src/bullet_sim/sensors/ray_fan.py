@@ -1,4 +1,4 @@
-"""Rows of rays from a sensor: what laser scanners, range finders and 3D lidars have in common."""
+"""Rows of rays from a sensor: the common part of laser scanners, range finders and 3D lidars."""
 
 import logging
 import math
@@ -12,16 +12,16 @@ from bullet_sim.world import World
 
 log = logging.getLogger(__name__)
 
-# Of a sweep: it takes about a second, in which no request is answered.
+# Of a sweep: it takes about a second, during which no request is answered.
 MOST_RAYS = 100_000
 
 
 class RayFan:
-    """Rays against collision shapes, laid out as in Gazebo's MultiRayShape::Init.
+    """Rays against collision shapes, arranged as in Gazebo's MultiRayShape::Init.
 
-    A row has `samples` x `resolution` rays. A single ray looks straight ahead, whatever the angles.
-    Rays begin at range_min, so the housing around the sensor is not seen. FormatError without a
-    <ray>.
+    A row has `samples` x `resolution` rays. A single ray points straight ahead, whatever the
+    angles. Rays begin at range_min, so the housing around the sensor is not seen. FormatError
+    without a <ray>.
     """
 
     def __init__(self, world: World, link: Link, description: SensorDescription):
@@ -33,7 +33,7 @@ class RayFan:
             ray.vertical_samples, ray.vertical_resolution)
         if columns * rows > MOST_RAYS:
             asked, (columns, rows) = (columns, rows), fewer_rays(columns, rows)
-            log.warning("sensor %s of %s has %d x %d rays, and more than %d are not cast: %d x %d "
+            log.warning("sensor %s of %s has %d x %d rays, but at most %d are cast: %d x %d "
                         "over the same angles are used", description.name, link.scoped_name,
                         *asked, MOST_RAYS, columns, rows)
         self.shape = rows, columns
@@ -54,15 +54,15 @@ class RayFan:
         return distances.reshape(self.shape), hits.retro.reshape(self.shape)
 
     def nearest(self) -> float:
-        """Distance to the nearest thing, m, as sonars and range finders measure it.
+        """Distance to the nearest object, m, as measured by sonars and range finders.
 
-        Where nothing is near it is range_max. The ray's own SDF noise is not added.
+        If nothing is near it is range_max. The ray's own SDF noise is not added.
         """
         return float(self.cast()[0].min())
 
 
 def fewer_rays(columns: int, rows: int) -> tuple[int, int]:
-    """As many columns and rows as are cast; the longer of the two is thinned first."""
+    """The numbers of columns and rows that are cast; the larger of the two is reduced first."""
     across = columns > rows
     longer, shorter = max(columns, rows), min(columns, rows)
     shorter = min(shorter, math.isqrt(MOST_RAYS))
@@ -76,5 +76,5 @@ def count(samples: int, resolution: float) -> int:
 
 
 def angles(first: float, last: float, number: int) -> np.ndarray:
-    """Directions of so many rays from the first angle to the last, rad."""
+    """So many directions evenly from the first angle to the last, rad."""
     return np.linspace(first, last, number) if number > 1 else np.zeros(1)

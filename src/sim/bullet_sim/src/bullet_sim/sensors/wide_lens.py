@@ -1,7 +1,7 @@
-"""Pictures of more than a pinhole can show: the faces of a cube, seen through a lens's function.
+"""Images wider than a pinhole's: the faces of a cube, mapped through a lens function.
 
 A point at the angle theta from the optical axis is seen at r = c1 f fun(theta / c2 + c3) from the
-middle of the picture, where r is 1 at half the picture's width: SDF's `<lens>`.
+centre of the image, where r is 1 at half the image's width: SDF's `<lens>`.
 """
 
 import math
@@ -17,8 +17,8 @@ from bullet_sim.rendering.frame import CameraView
 SMALLEST_PX = 8  # side of a cube's face
 _MARGIN_PX = 1  # around a face, so that neighbours meet without a seam
 _BEYOND = 0.2  # brightness beyond <cutoff_angle>
-_OUTSIDE = -2.0  # px; a place that shows nothing
-_FACES = [  # as the camera would have to be turned to look straight at them
+_OUTSIDE = -2.0  # px; a position that shows nothing
+_FACES = [  # the camera's rotations for looking straight at them
     Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, pitch, yaw)) for pitch, yaw in (
         (0.0, 0.0), (0.0, math.pi / 2), (0.0, -math.pi / 2), (-math.pi / 2, 0.0),
         (math.pi / 2, 0.0), (0.0, math.pi))
@@ -28,7 +28,7 @@ _INVERSE = {"sin": np.arcsin, "tan": np.arctan, "id": np.asarray}
 
 
 class WideLens:
-    """What a wide-angle camera sees, made from up to six square pictures of 90 degrees."""
+    """The image of a wide-angle camera, made from up to six square images of 90 degrees."""
 
     def __init__(self, camera: CameraDescription):
         self._camera = camera
@@ -42,7 +42,7 @@ class WideLens:
         self._beyond = (theta > camera.lens.cutoff_angle).astype(np.uint8)
 
     def draw(self, camera: Pose, draw_view: Callable[[CameraView], np.ndarray]) -> np.ndarray:
-        """(h, w, 3) uint8; `draw_view` gives the picture of a pinhole, `camera` is in the world."""
+        """The image (h, w, 3) uint8; `draw_view` draws a pinhole's, `camera` is a world pose."""
         side = self._camera.lens.env_texture_size
         strip = np.concatenate([
             draw_view(CameraView(side, side, self._face_fov, self._camera.near, self._camera.far,
@@ -72,7 +72,7 @@ class WideLens:
 
 
 def mistake_in_lens(camera: CameraDescription, largest_px: int) -> str | None:
-    """What of a wide-angle camera cannot be drawn by a renderer of pictures up to `largest_px`."""
+    """Why a renderer of images up to `largest_px` cannot draw such a camera; None if it can."""
     lens = camera.lens
     if not 0 < camera.horizontal_fov <= 2 * math.pi:
         return f"<horizontal_fov> is {camera.horizontal_fov}, which is not between 0 and 2 pi"
@@ -90,9 +90,9 @@ def mistake_in_lens(camera: CameraDescription, largest_px: int) -> str | None:
 
 def _places_on_faces(towards: np.ndarray, side: int,
                      focal_px: float) -> tuple[list[Pose], np.ndarray]:
-    """The faces that are seen, and for each pixel its place (h, w, 2) in a strip of their pictures.
+    """The faces that are seen, and for each pixel its place (h, w, 2) in a strip of their images.
 
-    The strip has them one below the other.
+    In the strip they are one below the other.
     """
     axes = np.array([face.matrix()[:3, 0] for face in _FACES])
     nearest = np.argmax(np.nan_to_num(towards) @ axes.T, axis=-1)

@@ -1,1 +1,1 @@
-"""Laws of joint controllers on handles: `update(time, period)`; no topics, no parameters."""
+"""Joint controllers on handles: `update(time, period)`; no topics, no parameters."""

@@ -10,20 +10,20 @@ from bullet_sim.errors import check_lengths
 
 @dataclass(frozen=True)
 class AckermannGeometry:
-    """Lengths in m, multipliers applied."""
+    """Lengths in m, with multipliers applied."""
 
     wheelbase: float
     wheel_radius: float
-    steering_multiplier: float = 1.0  # what the odometry multiplies the steering joint's angle by
+    steering_multiplier: float = 1.0  # the odometry's factor on the steering joint's angle
 
     def __post_init__(self):
         check_lengths(self, "wheelbase", "wheel_radius")
 
 
 class AckermannSteering(MobileBase):
-    """`turning` is the steering angle itself (rad), and its limits are of that.
+    """`turning` is the steering angle itself (rad), and its limits apply to that.
 
-    So in ackermann_steering_controller.cpp, AckermannSteeringController::update.
+    As AckermannSteeringController::update in ackermann_steering_controller.cpp.
     """
 
     def __init__(self, rear_wheel: CommandHandle, front_steer: CommandHandle,

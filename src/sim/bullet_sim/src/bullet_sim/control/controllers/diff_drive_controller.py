@@ -10,7 +10,7 @@ from bullet_sim.errors import check_lengths
 
 @dataclass(frozen=True)
 class DiffDriveGeometry:
-    """Lengths in m, multipliers applied."""
+    """Lengths in m, with multipliers applied."""
 
     wheel_separation: float
     left_radius: float
@@ -21,7 +21,7 @@ class DiffDriveGeometry:
 
 
 class DiffDrive(MobileBase):
-    """`turning` is the rate of yaw (rad/s). All wheels of a side get one velocity."""
+    """`turning` is the yaw rate (rad/s). All wheels of a side get the same velocity."""
 
     def __init__(self, left: Sequence[CommandHandle], right: Sequence[CommandHandle],
                  geometry: DiffDriveGeometry, options: BaseOptions):
@@ -31,7 +31,7 @@ class DiffDrive(MobileBase):
         self._travelled = (0.0, 0.0)
 
     def wheel_speeds(self, forward: float, turning: float) -> tuple[float, float]:
-        """Of the left and of the right wheels, rad/s."""
+        """Speeds of the left and of the right wheels, rad/s."""
         g = self.geometry
         half = turning * g.wheel_separation / 2
         return (forward - half) / g.left_radius, (forward + half) / g.right_radius

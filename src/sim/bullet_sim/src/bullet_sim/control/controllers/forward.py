@@ -1,4 +1,4 @@
-"""Hands commands on to the joints as they are."""
+"""Passes commands on to the joints unchanged."""
 
 from collections.abc import Sequence
 
@@ -7,14 +7,14 @@ from bullet_sim.control.handles import CommandHandle
 
 
 class Forward:
-    """One number for each joint. Starts at rest: no effort, no speed, the present positions."""
+    """One number for each joint. Starts at rest: no effort, no speed, the current positions."""
 
     def __init__(self, handles: Sequence[CommandHandle], timeout: float = 0.0):
         self._handles = handles
         self.commands = Commands(timeout)
 
     def start(self) -> None:
-        """Rest, until a command comes and after its time-out; a position is held where it is."""
+        """Rest until a command comes, and after its time-out; a position is held."""
         for handle in self._handles:
             handle.rest()
         rest = [handle.command for handle in self._handles]

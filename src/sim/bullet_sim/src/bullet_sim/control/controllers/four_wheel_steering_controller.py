@@ -1,4 +1,4 @@
-"""Four wheels, each driven and each steered, with no scrub: all turn about one point."""
+"""Four wheels, each driven and steered, without slip: all turn about one point."""
 
 import math
 from collections.abc import Sequence
@@ -9,9 +9,9 @@ from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
 from bullet_sim.control.handles import CommandHandle
 from bullet_sim.errors import check_lengths
 
-# m/s; slower than this the wheels stop (four_wheel_steering_controller.cpp, updateCommand)
+# m/s; below this speed the wheels stop (four_wheel_steering_controller.cpp, updateCommand)
 CRAWL = 1e-3
-STEEPEST = math.radians(89.9)  # an axle steered further has no tangent to drive by
+STEEPEST = math.radians(89.9)  # the tangent of a larger steering angle of an axle is not usable
 
 
 @dataclass(frozen=True)
@@ -26,13 +26,13 @@ class FourWheelGeometry:
         check_lengths(self, "track", "wheelbase", "wheel_radius")
 
     def places(self) -> tuple[tuple[float, float], ...]:
-        """Of the wheels from the middle: front left, front right, rear left, rear right."""
+        """The wheels' positions from the middle: front left, front right, rear left, rear right."""
         x, y = self.wheelbase / 2, self.track / 2
         return (x, y), (x, -y), (-x, y), (-x, -y)
 
 
 class FourWheelSteering(MobileBase):
-    """Takes a twist, or speed and the angles of both axles; the later of the two holds.
+    """Takes a twist, or speed and the angles of both axles; the later one counts.
 
     Wheels and steering joints in the order of `FourWheelGeometry.places`.
     """
@@ -47,24 +47,24 @@ class FourWheelSteering(MobileBase):
         self._last_motion = 0.0
 
     def command_axles(self, time: float, forward: float, front: float, rear: float) -> None:
-        """Speed (m/s) and steering angles (rad) of the front and the rear axle."""
+        """Command the speed (m/s) and the steering angles (rad) of the front and the rear axle."""
         self._command.clear()
         front, rear = (max(-STEEPEST, min(STEEPEST, angle)) for angle in (front, rear))
         self._axles.give(time, forward, front, rear)
 
     def command(self, time: float, forward: float, turning: float) -> None:
-        """Speed (m/s) and rate of yaw (rad/s)."""
+        """Command the speed (m/s) and the yaw rate (rad/s)."""
         self._axles.clear()
         super().command(time, forward, turning)
 
     def start(self, time: float) -> None:
-        """Stand still, wheels straight."""
+        """Stand still, with straight wheels."""
         self._axles.clear()
         self._now = self._last_motion = time
         super().start(time)
 
     def update(self, time: float, period: float) -> None:
-        """One control period."""
+        """Run one control period."""
         self._now = time
         super().update(time, period)
 
@@ -75,7 +75,7 @@ class FourWheelSteering(MobileBase):
         return self._command.at(time)
 
     def _yaw_rate(self, forward: float, front: float, rear: float) -> float:
-        """Of a speed and the tangents of both axles' angles."""
+        """The yaw rate from a speed and the tangents of both axles' angles."""
         return forward * (front - rear) / self._geometry.wheelbase
 
     def _drive(self, forward: float, turning: float) -> None:
@@ -102,12 +102,12 @@ class FourWheelSteering(MobileBase):
 
 def wheel_commands(geometry: FourWheelGeometry, forward: float, front: float,
                    rear: float) -> list[tuple[float, float]]:
-    """(rad/s, rad) of each wheel, for a speed (m/s) and the tangents of both axles' angles.
+    """(rad/s, rad) of each wheel, from a speed (m/s) and the tangents of both axles' angles.
 
-    A body turning at w moves at (v - w y, v tan) where a wheel at (x, y) stands; the wheel points
-    there. Where the turning point is between the wheels all are turned by a right angle.
+    A body turning at w moves at (v - w y, v tan) at a wheel at (x, y), and the wheel points in
+    that direction. If the turning point is between the wheels, all are at a right angle.
     """
-    slope = (front - rear) / geometry.wheelbase  # rate of yaw for each m/s
+    slope = (front - rear) / geometry.wheelbase  # yaw rate per m/s
     beside = abs(slope) * geometry.track / 2 < 1.0
     commands = []
     for x, y in geometry.places():
@@ -121,10 +121,10 @@ def wheel_commands(geometry: FourWheelGeometry, forward: float, front: float,
 
 def measured_twist(geometry: FourWheelGeometry, speeds: Sequence[float],
                    angles: Sequence[float]) -> tuple[float, float, float]:
-    """Forward and leftward (m/s) and yaw rate (rad/s) that fit four wheels best.
+    """Forward and leftward speed (m/s) and yaw rate (rad/s) that best fit four wheels.
 
-    Least squares over the wheels' velocity vectors; the wheels stand symmetrically about the
-    middle, so the sums separate.
+    Least squares over the wheels' velocity vectors; the wheels are symmetric about the middle, so
+    the sums separate.
     """
     forward = leftward = moment = arms = 0.0
     for (x, y), speed, angle in zip(geometry.places(), speeds, angles, strict=True):

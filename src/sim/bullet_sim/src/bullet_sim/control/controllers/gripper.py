@@ -1,4 +1,4 @@
-"""A gripper's one joint: moves to a position, and detects arrival and stalling."""
+"""A gripper with one joint: moves to a position, and detects arrival and stalling."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ class GripperOptions:
     """Defaults of gripper_action_controller_impl.h, GripperActionController::init."""
 
     goal_tolerance: float = 0.01  # rad or m
-    max_effort: float = 0.0  # N m or N, where a goal names none
-    stall_velocity_threshold: float = 0.001  # rad/s or m/s; slower is not moving
+    max_effort: float = 0.0  # N m or N, if a goal gives none
+    stall_velocity_threshold: float = 0.001  # rad/s or m/s; slower counts as standing
     stall_timeout: float = 1.0  # s
 
 
 @dataclass(frozen=True)
 class GripperState:
-    """Goal feedback and result."""
+    """Feedback and result of a goal."""
 
     position: float  # rad or m
     effort: float  # N m or N, as commanded
@@ -27,12 +27,12 @@ class GripperState:
     reached_goal: bool = False
 
 
-# Moves the joint: wanted position, greatest effort and period (s) in; commanded effort out.
+# Moves the joint: takes position, maximum effort and period (s); returns the commanded effort.
 Move = Callable[[float, float, float], float]
 
 
 def move_by_position(handle: CommandHandle) -> Move:
-    """The position is the command; the reported effort is the greatest."""
+    """Commands the position; reports the maximum effort."""
     def move(position: float, max_effort: float, period: float) -> float:
         handle.command = position
         return max_effort
@@ -40,7 +40,7 @@ def move_by_position(handle: CommandHandle) -> Move:
 
 
 def move_by_effort(handle: CommandHandle, pid: Pid) -> Move:
-    """A PID on the position, with no more than the greatest effort."""
+    """A PID on the position, limited to the maximum effort."""
     def move(position: float, max_effort: float, period: float) -> float:
         joint, bound = handle.joint, abs(max_effort)
         effort = pid.compute(position - joint.position, period, -joint.velocity)
@@ -50,40 +50,40 @@ def move_by_effort(handle: CommandHandle, pid: Pid) -> Move:
 
 
 class Gripper:
-    """`update` each control period; it returns the outcome of a goal."""
+    """Call `update` each control period; it returns the outcome of a goal."""
 
     def __init__(self, handle: CommandHandle, move: Move, options: GripperOptions):
         self._joint = handle.joint
         self._move = move
         self._options = options
-        self._moved = 0.0  # s, when it last did
+        self._moved = 0.0  # s, time of the last movement
         self._pursuing = False
         self.effort = 0.0
         self.hold()
 
     def start(self, time: float) -> None:
-        """Hold what is there."""
+        """Hold the current position."""
         self._moved = time
         self.hold()
 
     def hold(self) -> None:
-        """Stay here; nothing is pursued any more."""
+        """Hold the current position and drop the goal."""
         self._pursuing = False
         self._position, self._max_effort = self._joint.position, self._options.max_effort
 
     def pursue(self, time: float, position: float, max_effort: float) -> None:
-        """A goal: rad or m, and the greatest effort."""
+        """Pursue a goal: rad or m, and the maximum effort."""
         self._pursuing, self._moved = True, time
         self._position, self._max_effort = position, max_effort
 
     def state(self, stalled: bool = False, reached_goal: bool = False) -> GripperState:
-        """As it is now."""
+        """The current state."""
         return GripperState(self._joint.position, self.effort, stalled, reached_goal)
 
     def update(self, time: float, period: float) -> GripperState | None:
-        """One control period; how it ended, when the goal was reached or something is in the way.
+        """Run one control period; returns the result when the goal is reached or the joint stalls.
 
-        The position is held on afterwards.
+        The position is still held afterwards.
         """
         outcome = self._judge(time) if self._pursuing else None
         self._pursuing = self._pursuing and outcome is None

@@ -9,8 +9,8 @@ from bullet_sim.control.controllers.speed_limiter import UNLIMITED, SpeedLimiter
 from bullet_sim.control.handles import CommandHandle
 from bullet_sim.errors import check_lengths
 
-# What leftward speed and yaw rate add to a wheel's rim speed: front left, back left, back right,
-# front right. Seen from above the rollers' axes make an X; those on the ground a diamond.
+# Signs of leftward speed and yaw rate in a wheel's rim speed: front left, back left, back right,
+# front right. Seen from above, the rollers' axes form an X; those on the ground a diamond.
 SIGNS = ((-1, -1), (1, -1), (-1, 1), (1, 1))
 
 
@@ -18,7 +18,7 @@ SIGNS = ((-1, -1), (1, -1), (-1, 1), (1, 1))
 class MecanumGeometry:
     """Lengths in m."""
 
-    reach: float  # half the wheelbase and half the track together
+    reach: float  # half the wheelbase plus half the track
     wheel_radius: float
 
     def __post_init__(self):
@@ -26,11 +26,11 @@ class MecanumGeometry:
 
 
 class MecanumDrive(MobileBase):
-    """`turning` is the rate of yaw (rad/s); odometry always comes from the wheels."""
+    """`turning` is the yaw rate (rad/s); odometry always comes from the wheels."""
 
     def __init__(self, wheels: Sequence[CommandHandle], geometry: MecanumGeometry,
                  options: BaseOptions, sideways_limits: SpeedLimits = UNLIMITED):
-        """Wheels in the order of `SIGNS`; `sideways_limits` are of the leftward speed (m/s)."""
+        """Wheels in the order of `SIGNS`; `sideways_limits` are for the leftward speed (m/s)."""
         super().__init__(replace(options, open_loop=False))
         self._wheels, self._geometry = tuple(wheels), geometry
         self._sideways = TimedCommand(1, options.command_timeout)
@@ -39,7 +39,7 @@ class MecanumDrive(MobileBase):
         self._travelled = [0.0] * len(self._wheels)
 
     def command(self, time: float, forward: float, turning: float, leftward: float = 0.0) -> None:
-        """What to do from now (s, simulated) on; m/s, rad/s, m/s."""
+        """Command from now (s, simulated) on: m/s, rad/s, m/s."""
         self._sideways.give(time, leftward)
         super().command(time, forward, turning)
 
@@ -50,7 +50,7 @@ class MecanumDrive(MobileBase):
         super().start(time)
 
     def update(self, time: float, period: float) -> None:
-        """One control period."""
+        """Run one control period."""
         self._leftward = self._sideways_limiter.limit(self._sideways.at(time)[0], period)
         super().update(time, period)
 

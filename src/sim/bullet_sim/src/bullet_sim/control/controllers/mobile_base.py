@@ -1,4 +1,4 @@
-"""What all drives of a robot's base share: a command with a time-out, limits, and odometry."""
+"""The common part of mobile bases: a command with a time-out, limits, and odometry."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -13,14 +13,14 @@ class BaseOptions:
     """Defaults of diff_drive_controller.cpp, DiffDriveController::init."""
 
     forward_limits: SpeedLimits = UNLIMITED  # m/s
-    turning_limits: SpeedLimits = UNLIMITED  # rad/s; of a steering angle rad
-    command_timeout: float = 0.5  # s; then the base brakes
-    velocity_window: int = 10  # control periods that the published speeds are a mean of
+    turning_limits: SpeedLimits = UNLIMITED  # rad/s; rad for a steering angle
+    command_timeout: float = 0.5  # s; after that the base brakes
+    velocity_window: int = 10  # control periods over which the published speeds are averaged
     open_loop: bool = False  # odometry follows the commands instead of the wheels
 
 
 class MobileBase(ABC):
-    """Turns (forward, turning) into wheel commands each control period, and counts the way."""
+    """Turns (forward, turning) into wheel commands each control period; keeps the odometry."""
 
     def __init__(self, options: BaseOptions):
         self._options = options
@@ -28,11 +28,11 @@ class MobileBase(ABC):
         self._turning_limiter = SpeedLimiter(options.turning_limits)
         self._command = TimedCommand(2, options.command_timeout)
         self.odometry = PlanarOdometry(options.velocity_window)
-        self.wanted = (0.0, 0.0)  # before the limits
+        self.wanted = (0.0, 0.0)  # before limiting
         self.limited = (0.0, 0.0)
 
     def command(self, time: float, forward: float, turning: float) -> None:
-        """What to do from now (s, simulated) on; m/s, and what the drive turns by."""
+        """Command from now (s, simulated) on: m/s, and the drive's unit of turning."""
         self._command.give(time, forward, turning)
 
     def start(self, time: float) -> None:
@@ -46,7 +46,7 @@ class MobileBase(ABC):
         self.stop()
 
     def update(self, time: float, period: float) -> None:
-        """One control period: count the way, then move on."""
+        """Run one control period: update the odometry, then the commands."""
         if self._options.open_loop:
             self.odometry.update_open_loop(time, *self._twist(*self.limited))
         else:
@@ -65,10 +65,10 @@ class MobileBase(ABC):
 
     @abstractmethod
     def _moved(self) -> tuple[float, float, float]:
-        """Forward and leftward (m) and turn (rad) by the wheels since the last call."""
+        """Forward and leftward distance (m) and turn (rad) of the wheels since the last call."""
 
     def _twist(self, forward: float, turning: float) -> tuple[float, float]:
-        """Speed (m/s) and rate of yaw (rad/s) that such a command means."""
+        """Speed (m/s) and yaw rate (rad/s) for such a command."""
         return forward, turning
 
     @abstractmethod

@@ -1,4 +1,4 @@
-"""Dead reckoning on the plane: adds up small motions and smooths the speeds over the last few."""
+"""Dead reckoning in the plane: adds up small motions and averages the speeds of the last few."""
 
 import math
 from collections import deque
@@ -8,11 +8,11 @@ from bullet_sim.sensors.odometry import OdometryReading
 
 # s; no speed is computed from a shorter time (diff_drive_controller's odometry.cpp, update)
 SHORTEST = 1e-4
-STRAIGHT = 1e-6  # rad; less turn than this is a straight way
+STRAIGHT = 1e-6  # rad; a smaller turn counts as straight
 
 
 class PlanarOdometry:
-    """Starts at zero, wherever in the world that is; speeds are means over `window` updates."""
+    """Starts at zero, at any pose in the world; speeds are averaged over `window` updates."""
 
     def __init__(self, window: int):
         self._speeds: deque[tuple[float, float, float]] = deque(maxlen=max(1, window))
@@ -20,12 +20,12 @@ class PlanarOdometry:
         self._time = 0.0
 
     def restart(self, time: float) -> None:
-        """Go on from the same place; time counts from here and speeds from zero."""
+        """Continue from the same pose; time counts from here, and speeds start at zero."""
         self._time = time
         self._speeds.clear()
 
     def move(self, time: float, forward: float, leftward: float, turn: float) -> None:
-        """Add what was moved since the last call, in m and rad, seen from the pose before."""
+        """Add the motion since the last call, in m and rad, in the frame of the pose before."""
         elapsed = time - self._time
         if elapsed < 0:  # time was reset, and joints with it
             self.restart(time)
@@ -37,7 +37,7 @@ class PlanarOdometry:
         self._speeds.append((forward / elapsed, leftward / elapsed, turn / elapsed))
 
     def update_open_loop(self, time: float, forward: float, yaw_rate: float) -> None:
-        """Open loop: take these speeds (m/s, rad/s) for what was driven since the last call."""
+        """Open loop: use these speeds (m/s, rad/s) as the motion since the last call."""
         elapsed = max(0.0, time - self._time)
         self._time = time
         self._speeds.clear()
@@ -45,7 +45,7 @@ class PlanarOdometry:
         self._advance(forward * elapsed, 0.0, yaw_rate * elapsed)
 
     def sample(self) -> OdometryReading:
-        """The present estimate."""
+        """The current estimate."""
         pose = Pose((self._x, self._y, 0.0), quaternion_from_rpy(0.0, 0.0, self._yaw))
         count = max(1, len(self._speeds))
         forward, leftward, yaw_rate = (
@@ -53,7 +53,7 @@ class PlanarOdometry:
         return OdometryReading(self._time, pose, forward, leftward, yaw_rate)
 
     def _advance(self, forward: float, leftward: float, turn: float) -> None:
-        """Along the arc of constant twist: the exponential map of SE(2)."""
+        """Move along the arc of constant twist: the exponential map of SE(2)."""
         if abs(turn) < STRAIGHT:
             along, across = 1.0, turn / 2
         else:

@@ -1,4 +1,4 @@
-"""A PID from the error of a joint's position or velocity to its command: effort or velocity."""
+"""A PID from a joint's position or velocity error to its command: effort or velocity."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ class Servo(ABC):
     @property
     @abstractmethod
     def process_value(self) -> float:
-        """What is to reach the target."""
+        """The value that should reach the target."""
 
     @abstractmethod
     def update(self, target: float, period: float) -> None:
@@ -41,7 +41,7 @@ class VelocityServo(Servo):
     """Targets in rad/s or m/s."""
 
     def rest(self) -> float:
-        """No speed."""
+        """Zero speed."""
         return 0.0
 
     @property
@@ -60,7 +60,7 @@ class PositionServo(Servo):
     """Targets in rad or m, kept within the joint's limits; continuous joints turn the short way."""
 
     def rest(self) -> float:
-        """Where the joint is."""
+        """The joint's position."""
         return self.handle.joint.position
 
     @property
@@ -79,7 +79,7 @@ class PositionServo(Servo):
 
 
 class Servos:
-    """One target for each. A velocity falls back to 0 after a time-out, a position is held."""
+    """One target per joint. A velocity falls back to 0 after a time-out, a position is held."""
 
     def __init__(self, servos: Sequence[Servo], timeout: float = 0.0):
         self.servos = servos

@@ -1,4 +1,4 @@
-"""Keeps a commanded speed within bounds of velocity, acceleration and jerk."""
+"""Keeps a commanded speed within limits of velocity, acceleration and jerk."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ UNBOUNDED = (float("-inf"), float("inf"))
 
 @dataclass(frozen=True)
 class SpeedLimits:
-    """(least, greatest) of a speed in m/s or rad/s and of its first two derivatives."""
+    """(minimum, maximum) of a speed in m/s or rad/s and of its first two derivatives."""
 
     velocity: tuple[float, float] = UNBOUNDED
     acceleration: tuple[float, float] = UNBOUNDED  # per s
@@ -18,21 +18,21 @@ UNLIMITED = SpeedLimits()
 
 
 class SpeedLimiter:
-    """Remembers the last two speeds it let through; call `limit` once a control period."""
+    """Remembers the last two speeds that it returned; call `limit` once per control period."""
 
     def __init__(self, limits: SpeedLimits):
         self._limits = limits
         self.restart()
 
     def restart(self) -> None:
-        """From standstill."""
+        """Start from standstill."""
         self._last = self._before = 0.0
 
     def limit(self, wanted: float, period: float) -> float:
         """The allowed speed nearest to `wanted`, `period` s after the last one."""
         limits, last = self._limits, self._last
-        # SpeedLimiter::limit_jerk (diff_drive_controller's speed_limiter.cpp) lets a jerk act twice
-        # as much as it would by its unit, so the bounds in published configurations mean that.
+        # SpeedLimiter::limit_jerk (diff_drive_controller's speed_limiter.cpp) gives jerk twice its
+        # nominal effect, so the limits in published configurations mean that.
         bend = 2.0 * period * period
         speed = _within(wanted, limits.jerk, bend, last + (last - self._before))
         speed = _within(speed, limits.acceleration, period, last)

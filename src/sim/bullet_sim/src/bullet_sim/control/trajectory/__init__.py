@@ -1,1 +1,1 @@
-"""Trajectories of joints: splines, how a new one joins the present one, tolerances, following."""
+"""Joint trajectories: splines, joining a new one to the current one, tolerances, following."""

@@ -10,7 +10,7 @@ from bullet_sim.control.trajectory.request import TrajectoryRequest, check, join
 from bullet_sim.control.trajectory.segment import Waypoint
 from bullet_sim.control.trajectory.tolerances import GoalTolerances, Tolerance
 
-# Writes one joint's command: its desired state, the error of it, and the period (s).
+# Writes one joint's command: takes its desired state, its error, and the period (s).
 Drive = Callable[[Waypoint, Waypoint, float], None]
 
 
@@ -24,7 +24,7 @@ class Verdict(Enum):
 
 @dataclass(frozen=True)
 class Outcome:
-    """A goal is over."""
+    """The end of a goal."""
 
     verdict: Verdict
     text: str = ""
@@ -32,7 +32,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class _Goal:
-    """What is to be judged, by the index of the joint."""
+    """The checks of a goal, by the index of the joint."""
 
     begins: float  # s
     path: dict[int, Tolerance]
@@ -41,7 +41,7 @@ class _Goal:
 
 
 class TrajectoryFollower:
-    """Its time is its own uptime, which a reset of the world does not turn back."""
+    """Its time is its own uptime, which a reset of the world does not change."""
 
     def __init__(self, joints: Sequence[JointHandle], drives: Sequence[Drive],
                  stop_duration: float = 0.0, partial: bool = False):
@@ -65,16 +65,16 @@ class TrajectoryFollower:
         self.hold()
 
     def hold(self) -> None:
-        """Come to rest; nothing is judged any more."""
+        """Come to rest; drop the goal."""
         self._goal = None
         self._paths = [stopping(self._uptime, joint.position, joint.velocity, self._stop_duration)
                        for joint in self.joints]
 
     def follow(self, request: TrajectoryRequest, tolerances: GoalTolerances | None = None) -> None:
-        """Replace what is followed; an InvalidTrajectory leaves everything as it is.
+        """Replace the trajectory; an InvalidTrajectory leaves everything as it is.
 
-        With tolerances the request is a goal, and `update` says when it is over. Without points it
-        means to hold still.
+        With tolerances the request is a goal, and `update` returns its outcome. Without points the
+        joints hold still.
         """
         if request.points or tolerances:
             check(request, self.names, self._partial)
@@ -96,7 +96,7 @@ class TrajectoryFollower:
                      tolerances.time)
 
     def update(self, time: float, period: float) -> Outcome | None:
-        """One control period; the goal's outcome when it is over."""
+        """Run one control period; returns the goal's outcome when it is over."""
         self._time, self._period = time, period
         self._uptime += period
         self._compare()
@@ -106,7 +106,7 @@ class TrajectoryFollower:
         return outcome
 
     def sample(self, time: float) -> list[Waypoint]:
-        """What is to be at a moment of simulated time (s)."""
+        """The desired states at a simulated time (s)."""
         own = self._own_time(time)
         return [path.sample(own) for path in self._paths]
 

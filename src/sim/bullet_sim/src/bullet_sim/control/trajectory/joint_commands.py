@@ -1,4 +1,4 @@
-"""How a joint of each command interface is made to follow its desired state."""
+"""Makes a joint of each command interface follow its desired state."""
 
 from bullet_sim.control.handles import CommandHandle
 from bullet_sim.control.pid import Pid
@@ -6,13 +6,13 @@ from bullet_sim.control.trajectory.segment import Waypoint
 
 
 class PositionDrive:
-    """The desired position is the command."""
+    """Commands the desired position."""
 
     def __init__(self, handle: CommandHandle):
         self._handle = handle
 
     def restart(self) -> None:
-        """Stay here."""
+        """Hold the current position."""
         self._handle.rest()
 
     def __call__(self, desired: Waypoint, error: Waypoint, period: float) -> None:
@@ -25,10 +25,10 @@ class PidDrive:
     def __init__(self, handle: CommandHandle, pid: Pid, velocity_ff: float = 0.0):
         self._handle = handle
         self._pid = pid
-        self._velocity_ff = velocity_ff  # command for each rad/s or m/s
+        self._velocity_ff = velocity_ff  # command per rad/s or m/s
 
     def restart(self) -> None:
-        """Forget errors of the past."""
+        """Forget past errors."""
         self._pid.reset()
         self._handle.rest()
 

@@ -1,4 +1,4 @@
-"""One joint's whole trajectory: segments in a row."""
+"""One joint's whole trajectory: a sequence of segments."""
 
 from bisect import bisect_right
 from collections.abc import Sequence
@@ -7,7 +7,7 @@ from bullet_sim.control.trajectory.segment import Segment, Waypoint
 
 
 class Path:
-    """Segments in the order of time; between two of them the earlier one's end is held."""
+    """Segments in the order of time; between two of them the end of the earlier one is held."""
 
     def __init__(self, segments: Sequence[Segment]):
         self.segments = tuple(segments)
@@ -19,22 +19,22 @@ class Path:
         return self.segments[-1].end_time
 
     def index(self, time: float) -> int:
-        """Of the segment that is followed at a moment; the first one before that begins."""
+        """The index of the segment at a time; the first one before that begins."""
         return max(0, bisect_right(self._starts, time) - 1)
 
     def sample(self, time: float) -> Waypoint:
-        """Position, velocity and acceleration at a moment."""
+        """Position, velocity and acceleration at a time."""
         return self.segments[self.index(time)].sample(time)
 
     def between(self, start: float, end: float) -> tuple[Segment, ...]:
-        """The segments that are followed from one moment to another."""
+        """The segments that are followed between two times."""
         return self.segments[self.index(start):self.index(end) + 1]
 
 
 def stopping(time: float, position: float, velocity: float, duration: float) -> Path:
-    """From a moving joint to a standing one in `duration` s, as even braking would end.
+    """Brings a moving joint to rest in `duration` s, to the position where constant braking ends.
 
-    Without any duration the joint is held where it is.
+    With a duration of 0, the joint is held where it is.
     """
     end = Waypoint(position + velocity * duration / 2, 0.0, 0.0)
     return Path([Segment(time, Waypoint(position, velocity, 0.0), time + duration, end)])

@@ -1,4 +1,4 @@
-"""A requested trajectory, checked and joined to the one that is being followed."""
+"""A requested trajectory, checked and joined to the current one."""
 
 import math
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ class InvalidTrajectory(SimulationError):
 
 
 class InvalidJoints(InvalidTrajectory):
-    """It is for other joints."""
+    """The trajectory is for other joints."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class RequestedPoint:
     accelerations: Sequence[float] = ()
 
     def waypoint(self, column: int, offset: float = 0.0) -> Waypoint:
-        """One joint's part."""
+        """The waypoint of one joint."""
         return Waypoint(self.positions[column] + offset,
                         self.velocities[column] if self.velocities else None,
                         self.accelerations[column] if self.accelerations else None)
@@ -44,7 +44,7 @@ class TrajectoryRequest:
 
 
 def check(request: TrajectoryRequest, joints: Sequence[str], partial: bool) -> None:
-    """Raise for what is wrong; `partial`: some of the joints are enough.
+    """Raise for an invalid request; `partial`: some of the joints are enough.
 
     InvalidJoints or InvalidTrajectory.
     """
@@ -78,13 +78,13 @@ def _check_values(number: int, point: RequestedPoint, count: int) -> None:
 
 def join(request: TrajectoryRequest, joints: Sequence[str], continuous: Sequence[bool],
          paths: Sequence[Path], now: float) -> list[Path]:
-    """The paths to follow from now on (s): the present ones until the new trajectory begins.
+    """The paths to follow from now on (s): the current ones until the new trajectory begins.
 
-    Points that lie in the past are left out. A `continuous` joint goes the shortest way to the
-    first point and keeps counting turns from there. Joints that are not asked for go on.
+    Points in the past are left out. A `continuous` joint goes the shortest way to the first point
+    and keeps counting turns from there. Joints that are not in the request continue.
     InvalidTrajectory if no point is later than `now`.
     """
-    start = now if request.start is None else request.start  # in the time of `now`
+    start = now if request.start is None else request.start  # on the same clock as `now`
     points = [point for point in request.points if start + point.time > now]
     if not points:
         late = now - start - request.points[-1].time

@@ -1,12 +1,12 @@
-"""One joint's way between two moments: a line, a cubic or a quintic polynomial of time."""
+"""One joint's motion between two times: a linear, cubic or quintic polynomial of time."""
 
 from typing import NamedTuple
 
-SHORTEST = 1e-9  # s; in less time than this a joint is simply at the end
+SHORTEST = 1e-9  # s; with a shorter duration, a joint is at the end at once
 
 
 class Waypoint(NamedTuple):
-    """Where a joint is and how it moves; None where a trajectory does not say."""
+    """A joint's state; None for values that a trajectory does not give."""
 
     position: float  # rad or m
     velocity: float | None = None
@@ -14,7 +14,7 @@ class Waypoint(NamedTuple):
 
 
 class Segment:
-    """Interpolates as far as both ends say how: position, velocity, acceleration.
+    """Interpolates with all values that both ends give: position, velocity, acceleration.
 
     Before its start and after its end the joint stands still at that end.
     """
@@ -28,7 +28,7 @@ class Segment:
         self._coefficients = _coefficients(start, end, end_time - start_time)
 
     def sample(self, time: float) -> Waypoint:
-        """Position, velocity and acceleration at a moment."""
+        """Position, velocity and acceleration at a time."""
         if time < self.start_time:
             return Waypoint(self._ends[0].position, 0.0, 0.0)
         if time > self.end_time or self.end_time - self.start_time < SHORTEST:
@@ -43,7 +43,7 @@ class Segment:
 
 
 def _coefficients(start: Waypoint, end: Waypoint, duration: float) -> tuple[float, ...]:
-    """Of the polynomial in the time since the start, highest power first."""
+    """Coefficients of the polynomial in the time since the start, highest power first."""
     p0, v0, a0 = start
     p1, v1, a1 = end
     if duration < SHORTEST:
@@ -52,7 +52,7 @@ def _coefficients(start: Waypoint, end: Waypoint, duration: float) -> tuple[floa
     if v0 is None or v1 is None:
         return ((p1 - p0) / t, p0)
     if a0 is None or a1 is None:
-        # What a cubic has to add to the line p0 + v0 s to end right.
+        # What a cubic adds to the line p0 + v0 s to meet the end.
         gap, rate = p1 - p0 - v0 * t, v1 - v0
         return ((rate * t - 2 * gap) / t**3, (3 * gap - rate * t) / t**2, v0, p0)
     # The same for a quintic and the parabola p0 + v0 s + a0 s^2 / 2.

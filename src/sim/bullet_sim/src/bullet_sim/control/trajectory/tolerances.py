@@ -1,4 +1,4 @@
-"""How far a joint may be from its trajectory, on the way and at the end."""
+"""Tolerances of a joint's distance from its trajectory, on the way and at the end."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from bullet_sim.control.trajectory.segment import Waypoint
 
 @dataclass(frozen=True)
 class Tolerance:
-    """Greatest errors of one joint; 0: not checked."""
+    """Maximum errors of one joint; 0: not checked."""
 
     position: float = 0.0  # rad or m
     velocity: float = 0.0
     acceleration: float = 0.0
 
     def violation(self, error: Waypoint) -> str | None:
-        """The quantity that is out of bounds, in words; None if none is."""
+        """The name of the quantity that is out of bounds; None if none is."""
         for name in ("position", "velocity", "acceleration"):
             bound, value = getattr(self, name), getattr(error, name)
             if bound > 0.0 and value is not None and abs(value) > bound:
@@ -24,14 +24,14 @@ class Tolerance:
         return None
 
     def replaced(self, position: float, velocity: float, acceleration: float) -> Tolerance:
-        """With those of a goal, see `chosen`."""
+        """With the tolerances of a goal, see `chosen`."""
         return Tolerance(chosen(position, self.position), chosen(velocity, self.velocity),
                          chosen(acceleration, self.acceleration))
 
 
 @dataclass(frozen=True)
 class GoalTolerances:
-    """Of all joints by name."""
+    """Tolerances of all joints by name."""
 
     path: dict[str, Tolerance] = field(default_factory=dict)
     goal: dict[str, Tolerance] = field(default_factory=dict)
@@ -39,7 +39,7 @@ class GoalTolerances:
 
 
 def chosen(wish: float, default: float) -> float:
-    """By the wish of a goal: above 0 replaces, below 0 switches off, 0 leaves as it is."""
+    """A goal's value: positive replaces the default, negative means none, 0 keeps the default."""
     if wish > 0.0:
         return wish
     return 0.0 if wish < 0.0 else default

@@ -1,7 +1,7 @@
-"""Reads `<actor>`: a figure that walks a trajectory, whatever is in its way.
+"""Reads `<actor>`: a figure that walks a trajectory, regardless of obstacles.
 
-It is a model that has no collisions but those of links of its own: cameras see it,
-ray sensors do not. Skin and animation files are not read; a plain figure stands for the person.
+It is a model whose only collisions are those of its own links: cameras see it,
+ray sensors do not. Skin and animation files are not read; a simple figure represents the person.
 """
 
 from xml.etree.ElementTree import Element
@@ -22,9 +22,9 @@ SKIN = description.Material(ambient=(0.8, 0.6, 0.5, 1.0), diffuse=(0.8, 0.6, 0.5
 
 
 def read_actor(element: Element, source: Source) -> description.ModelDescription:
-    """An actor as a model that is moved, at the pose where its script begins.
+    """An actor as a moving model, at the pose where its script begins.
 
-    FormatError without a name.
+    FormatError if it has no name.
     """
     name = element.get("name", "")
     if not name:
@@ -48,7 +48,7 @@ def read_actor(element: Element, source: Source) -> description.ModelDescription
 
 
 def _figure(link: str, scale: float) -> description.LinkDescription:
-    """A standing figure, its feet at z = 0."""
+    """A standing figure with its feet at z = 0."""
     body = description.Cylinder(BODY_RADIUS * scale, BODY_HEIGHT * scale)
     head = description.Sphere(HEAD_RADIUS * scale)
     top = (BODY_HEIGHT + HEAD_RADIUS) * scale
@@ -59,7 +59,7 @@ def _figure(link: str, scale: float) -> description.LinkDescription:
 
 
 def _trajectory(script: Element | None, where: str) -> description.Trajectory | None:
-    """All trajectories of a script, one after the other by their ids."""
+    """All trajectories of a script, one after another in the order of their ids."""
     if script is None:
         return None
     where = f"{where} <script>"

@@ -1,4 +1,4 @@
-"""Resolves SDF pose frames: `relative_to`, `frame`, `attached_to`, within one model."""
+"""Resolves SDF pose frames within one model: `relative_to`, `frame`, `attached_to`."""
 
 from xml.etree.ElementTree import Element
 
@@ -7,11 +7,11 @@ from bullet_sim.formats.xml_values import pose
 from bullet_sim.pose import IDENTITY, Pose
 
 MODEL = "__model__"
-JOINT = "joint "  # before SDF 1.7 a joint may bear the name of a link
+JOINT = "joint "  # before SDF 1.7 a joint may have the same name as a link
 
 
 class Frames:
-    """Named frames of one model and their poses in the model frame, joints at zero."""
+    """Named frames of a model and their poses in the model frame, with joints at zero."""
 
     def __init__(self, source: Source, model: str):
         self._source = source
@@ -19,11 +19,11 @@ class Frames:
         self._placed: dict[str, tuple[str, Pose]] = {}  # name -> (frame it is given in, pose)
 
     def add(self, name: str, given_in: str, placed: Pose) -> None:
-        """A frame known by name, given in another one that may come later."""
+        """Add a named frame, relative to another one that may be added later."""
         self._placed[name] = (given_in or MODEL, placed)
 
     def add_element(self, element: Element, usual: str, where: str) -> None:
-        """The frame of a link, joint or `<frame>`; `usual` is what its pose is relative to."""
+        """Add the frame of a link, joint or `<frame>`; `usual` is its pose's frame by default."""
         name = element.get("name", "")
         given_in, placed = relative_to(element) or usual, pose(element, where)
         if element.tag == "joint":
@@ -44,7 +44,7 @@ class Frames:
         passed: list[str] = []
         while name not in (MODEL, "world"):
             if name in passed or name not in self._placed:
-                reason = "goes round in a circle" if name in passed else "is not in the model"
+                reason = "refers to itself" if name in passed else "is not in the model"
                 self._source.warn_once(
                     f"model {self._model!r}: pose frame {name!r} {reason}; model frame taken"
                 )
@@ -56,7 +56,7 @@ class Frames:
 
 
 def relative_to(element: Element) -> str:
-    """The frame an element's pose names: `relative_to` since SDF 1.7, `frame` before."""
+    """The frame named by an element's pose: `relative_to` since SDF 1.7, `frame` before."""
     written = element.find("pose")
     if written is None:
         return ""
@@ -64,13 +64,13 @@ def relative_to(element: Element) -> str:
 
 
 def end_of(joint: Element, role: str) -> str:
-    """Name of a joint's parent or child; SDF 1.2 wrote it as the attribute `link`."""
+    """Name of a joint's parent or child; SDF 1.2 had it in the attribute `link`."""
     end = joint.find(role)
     return "" if end is None else (end.text or "").strip() or end.get("link", "")
 
 
 def add_model_frames(frames: Frames, element: Element, where: str) -> None:
-    """All links, joints and frames that are children of a `<model>`."""
+    """Add all links, joints and frames that are children of a `<model>`."""
     for link in element.findall("link"):
         frames.add_element(link, MODEL, f"{where}, link {link.get('name')!r}")
     for joint in element.findall("joint"):

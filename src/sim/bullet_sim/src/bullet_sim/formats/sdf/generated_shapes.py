@@ -1,4 +1,4 @@
-"""Reads the shapes that are made, not loaded: `<heightmap>`, `<polyline>`, `<image>`."""
+"""Reads shapes that are generated, not loaded: `<heightmap>`, `<polyline>`, `<image>`."""
 
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -9,7 +9,7 @@ from bullet_sim.errors import FormatError, ResourceNotFound
 from bullet_sim.formats.source import Source
 
 IMAGE_KINDS = (".png", ".jpg", ".jpeg", ".bmp", ".pgm", ".tif", ".tiff")
-# Colours for textures of Gazebo's media folder, by a word in the file name: we ship no textures.
+# Colours for textures of Gazebo's media folder, by a word in the file name: we have no textures.
 GROUNDS: dict[str, description.Rgba] = {
     "dirt": (0.42, 0.33, 0.24, 1.0),
     "grass": (0.25, 0.42, 0.16, 1.0),
@@ -24,7 +24,7 @@ SOIL: description.Rgba = (0.45, 0.4, 0.3, 1.0)
 
 
 def read_heightmap(element: Element, source: Source, where: str) -> description.Heightmap:
-    """Ground; flat, with a warning, where its image cannot be had."""
+    """Terrain; flat, with a warning, if its image cannot be used."""
     where = f"{where} <heightmap>"
     path = _image(element, source, where, "flat ground of its size is taken")
     return description.Heightmap(
@@ -36,7 +36,7 @@ def read_heightmap(element: Element, source: Source, where: str) -> description.
 
 
 def read_polylines(geometry: Element, source: Source, where: str) -> description.Polyline:
-    """All `<polyline>` of a `<geometry>` as one solid; the height is that of the first.
+    """All `<polyline>` of a `<geometry>` as one solid, with the height of the first.
 
     FormatError for an outline of fewer than three points.
     """
@@ -53,9 +53,9 @@ def read_polylines(geometry: Element, source: Source, where: str) -> description
 
 
 def read_image(element: Element, source: Source, where: str) -> description.ImageExtrusion | None:
-    """A floor plan; None, with a warning, where the picture cannot be had.
+    """A floor plan; None, with a warning, if the image cannot be used.
 
-    FormatError of a number that cannot be.
+    FormatError for an impossible number.
     """
     where = f"{where} <image>"
     path = _image(element, source, where, "left out")
@@ -70,14 +70,14 @@ def read_image(element: Element, source: Source, where: str) -> description.Imag
 
 
 def _image(element: Element, source: Source, where: str, otherwise: str) -> str | None:
-    """Path of the image that `<uri>` names."""
+    """Path of the image named by `<uri>`."""
     uri = xml.child_text(element, "uri") or xml.child_text(element, "filename")
     try:
         path = source.resources.resolve(uri, source.folder)
         if not path.is_file():
             raise ResourceNotFound(f"image {uri!r}", [str(path)])
         if path.suffix.lower() not in IMAGE_KINDS:
-            raise FormatError(f"{path.name} is of no kind that can be read; there are: "
+            raise FormatError(f"{path.name} is of a kind that cannot be read; there are: "
                               f"{', '.join(IMAGE_KINDS)}")
     except (ResourceNotFound, FormatError) as error:
         source.warn_once(f"{where}: {error}; {otherwise}", about=f"{where} {uri}")
@@ -86,7 +86,7 @@ def _image(element: Element, source: Source, where: str, otherwise: str) -> str 
 
 
 def _layers(element: Element, source: Source, where: str) -> tuple[description.TerrainLayer, ...]:
-    """Textures with the heights from which they show; where they fade into each other is an edge.
+    """Textures with the heights where they begin; blending into each other is replaced by an edge.
     """
     lowest = [0.0] + [xml.amount(blend, "min_height", 0.0, f"{where} <blend>")
                       for blend in element.findall("blend")]
@@ -107,7 +107,7 @@ def _ground(uri: str, source: Source) -> description.Material:
         if path.is_file():
             return description.Material(texture=str(path))
     except ResourceNotFound:
-        pass  # Gazebo's own textures are not here: their colour is
+        pass  # Gazebo's own textures are not here, only their colours
     name = Path(uri).name.lower()
     colour = next((rgba for word, rgba in GROUNDS.items() if word in name), None)
     if colour is None:

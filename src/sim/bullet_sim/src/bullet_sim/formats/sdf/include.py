@@ -15,11 +15,11 @@ from bullet_sim.formats.xml_values import child_text, flag, pose, read_xml_file
 Found = ModelDescription | LightDescription
 MANIFESTS = ("model.config", "manifest.xml")
 DEEPEST = 30  # files that include each other
-MOST_FILES = 2000  # of one world: a few files that include each other twice are a million
+MOST_FILES = 2000  # of one world: a few files that include each other twice make a million
 
 
 def read_include(include: Element, source: Source) -> Found | None:
-    """What an include brings in; None, with one error line, where it cannot be had."""
+    """The included model or light; None, with one error line, if it cannot be read."""
     uri = child_text(include, "uri")
     if len(source.files) >= MOST_FILES:
         source.warn_once(f"more than {MOST_FILES} <include>s; the rest is left out", "includes")
@@ -54,7 +54,7 @@ def _read(include: Element, uri: str, source: Source) -> Found:
 
 
 def _overridden(found: Found, include: Element) -> Found:
-    """With the include's own name and pose; a model also with its static flag and plugins."""
+    """Apply the include's own name and pose; for a model also its static flag and plugins."""
     where = f"<include> of {child_text(include, 'uri')}"
     found = replace(found, name=child_text(include, "name", found.name),
                     pose=pose(include, where, found.pose))
@@ -65,9 +65,9 @@ def _overridden(found: Found, include: Element) -> Found:
 
 
 def model_file(found: Path) -> Path:
-    """The file to read for a model folder: the newest SDF its model.config names that we know.
+    """The file to read in a model folder: the newest supported SDF named by its model.config.
 
-    ResourceNotFound without one, FormatError for a model.config that names none.
+    ResourceNotFound if there is none, FormatError for a model.config that names none.
     """
     if found.is_file():
         return found

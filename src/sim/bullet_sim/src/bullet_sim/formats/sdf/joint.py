@@ -1,4 +1,4 @@
-"""Reads SDF joints, bringing old files' model-frame axes into the joint frame."""
+"""Reads SDF joints, converting old files' model-frame axes to the joint frame."""
 
 import math
 from functools import partial
@@ -91,9 +91,9 @@ def _axis_numbers(axis: Element, where: str) -> dict[str, float]:
 
 
 def read_limit(text: str, key: str, where: str) -> float:
-    """One number of a joint's limits; infinity is allowed here and means none.
+    """One number of a joint's limits; infinity is allowed here and means no limit.
 
-    FormatError of what is not a number.
+    FormatError if it is not a number.
     """
     if text.strip().lower() in (("-inf",) if key == "lower" else ("inf", "+inf")):
         return getattr(UNLIMITED, key)
@@ -114,7 +114,7 @@ def _direction(
 
 
 def unit_axis(written: Vector3, usual: Vector3, where: str) -> Vector3:
-    """An axis of length 1; `usual`, with an error line, for one without a direction."""
+    """An axis of length 1; `usual`, with an error line, if it has no direction."""
     length = math.hypot(*written)
     if length == 0.0:
         instead(FormatError(f"{where}: the axis {xml.shown(written)} has no direction"),
@@ -124,7 +124,7 @@ def unit_axis(written: Vector3, usual: Vector3, where: str) -> Vector3:
 
 
 def _axis_frame(axis: Element, source: Source) -> str:
-    """The frame an axis is given in; empty for the joint's own."""
+    """The frame in which an axis is given; empty for the joint's own."""
     expressed_in = axis.find("xyz")
     if expressed_in is not None and expressed_in.get("expressed_in"):
         return expressed_in.get("expressed_in", "")

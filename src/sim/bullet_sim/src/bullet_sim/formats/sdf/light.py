@@ -7,7 +7,7 @@ from bullet_sim.formats.xml_values import colour, fields, flag, number, pose, ve
 
 
 def read_light(element: Element, inside: str = "") -> LightDescription:
-    """A light of a world or, with `inside` naming it, of a link."""
+    """A light of a world or, if `inside` names one, of a link."""
     name = element.get("name", "")
     where = f"{inside}, light {name!r}" if inside else f"light {name!r}"
     usual = LightDescription(name)

@@ -23,9 +23,9 @@ TENSOR = (("ixx", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyy", 1.0), ("iyz", 0.0), 
 def read_link(
     element: Element, source: Source, model: str, frames: Frames | None = None
 ) -> LinkDescription:
-    """A link where its model's frames have it; without them in the origin of its model.
+    """A link, posed by its model's frames; without these at its model's origin.
 
-    FormatError without a name, or with the name `world`.
+    FormatError if it has no name, or the name `world`.
     """
     name = element.get("name", "")
     if not name:
@@ -63,7 +63,7 @@ def read_link(
 
 
 def _warn_of_lost_collisions(element: Element, source: Source, where: str) -> None:
-    """Of files that were not found, also if a warning was given for another link."""
+    """Name the files that were not found, even if another link's warning named them."""
     files = [child_text(shape, "uri") or child_text(shape, "filename")
              for shape in element.findall("collision/geometry/*")]
     if any(files):
@@ -79,7 +79,7 @@ def _decay(element: Element, where: str) -> dict[str, float]:
 
 
 class _PartPlaces:
-    """Brings a part whose pose names a frame into the frame of its link."""
+    """Converts the pose of a part from the frame that it names to the link's frame."""
 
     def __init__(self, link: str, frames: Frames, source: Source, where: str):
         self._link = link
@@ -101,7 +101,7 @@ class _PartPlaces:
 
 
 def read_inertial(element: Element, where: str) -> Inertial:
-    """A link's `<inertial>`, with SDF's unit defaults."""
+    """A link's `<inertial>`, with SDF's defaults: 1 kg and a unit tensor."""
     inertial = element.find("inertial")
     if inertial is None:
         return Inertial()

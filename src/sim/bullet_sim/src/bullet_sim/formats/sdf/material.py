@@ -20,7 +20,7 @@ COLOURS = ("ambient", "diffuse", "specular", "emissive")
 
 
 def read_material(element: Element, source: Source, where: str) -> Material | None:
-    """A visual's material; None without any known element."""
+    """A visual's material; None if there is no known element."""
     named = _scripted(element, source, where)
     written = [name for name in COLOURS if child_text(element, name)]
     start = named or Material()
@@ -38,7 +38,7 @@ def read_material(element: Element, source: Source, where: str) -> Material | No
 
 
 def _albedo_map(element: Element, source: Source, where: str) -> str | None:
-    """The colours of a physically based material; its other maps have no part in this light."""
+    """The colour texture of a physically based material; its other maps are not supported."""
     for workflow in PBR_WORKFLOWS:
         uri = child_text(element, f"pbr/{workflow}/albedo_map")
         if uri:
@@ -62,7 +62,7 @@ def _scripted(element: Element, source: Source, where: str) -> Material | None:
 
 
 def find_material(name: str, uris: list[str], source: Source, where: str) -> Material | None:
-    """A material of the scripts at `uris`, of Gazebo's own, or of a media folder."""
+    """A material from the scripts at `uris`, Gazebo's own materials, or a media folder."""
     own = [uri for uri in uris if not uri.endswith(BUILTIN_SCRIPT)]
     places, missing = _folders_and_scripts(own, source)
     found = _in_scripts(name, places, source)
@@ -119,7 +119,7 @@ def _scripts_in(places: list[Path]) -> list[Path]:
 
 
 def _imports(script: Path, source: Source) -> list[Path]:
-    """Scripts that a script names in `import … from FILE`, beside it."""
+    """Scripts named in a script's `import … from FILE`, next to it."""
     names = {name for material in _parsed(script, source).values() for name in material.imports}
     return [script.parent / name for name in sorted(names)
             if os.path.isfile(script.parent / name)]

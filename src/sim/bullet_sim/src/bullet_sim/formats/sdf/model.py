@@ -21,7 +21,7 @@ NOT_SUPPORTED = ("gripper", "urdf")
 def read_model(element: Element, source: Source, inside: str = "") -> ModelDescription:
     """A `<model>`; links of nested models are named `nested::link`, as by Base::ComputeScopedName.
 
-    FormatError without a name or a link.
+    FormatError if it has no name or no link.
     """
     name = element.get("name", "")
     if not name:
@@ -62,7 +62,7 @@ def read_model(element: Element, source: Source, inside: str = "") -> ModelDescr
 def _nested_models(
     element: Element, source: Source, where: str
 ) -> Iterator[tuple[ModelDescription, str]]:
-    """Nested models and the frames their poses are given in."""
+    """Nested models and the frames in which their poses are given."""
     for nested in element.findall("model"):
         model = or_without(read_model, nested, source, where)
         if model is not None:
@@ -116,7 +116,7 @@ def _scoped(model: ModelDescription) -> ModelDescription:
 
 
 def _with_scoped_names(plugin: PluginDescription, renamed: dict[str, str]) -> PluginDescription:
-    """A plugin whose parameters name links or joints follows them into the outer model."""
+    """Rename links or joints in a plugin's parameters for the outer model."""
     for parameter in plugin.element.iter():
         text = (parameter.text or "").strip()
         if text in renamed:
@@ -125,7 +125,7 @@ def _with_scoped_names(plugin: PluginDescription, renamed: dict[str, str]) -> Pl
 
 
 def without_twins(element: Element, tag: str, where: str) -> list[Element]:
-    """The links or joints in an element; a second one of a name is left out, with an error line."""
+    """The links or joints of an element; a second one of a name is left out, with an error line."""
     found: dict[str, Element] = {}
     for part in element.findall(tag):
         name = part.get("name", "")

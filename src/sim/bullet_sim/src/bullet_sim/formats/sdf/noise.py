@@ -1,4 +1,4 @@
-"""Reads SDF's noise models, of any sensor and of the axes of an IMU."""
+"""Reads SDF's noise models, of sensors and of the axes of an IMU."""
 
 from xml.etree.ElementTree import Element
 
@@ -20,7 +20,7 @@ def read_noise(element: Element | None, where: str, kind: str = "gaussian") -> N
 
 
 def read_imu(element: Element | None, where: str) -> ImuDescription:
-    """The `<imu>` of a sensor: noise by axis, or as SDF 1.4 has it, one for all three."""
+    """The `<imu>` of a sensor: noise per axis, or as in SDF 1.4 the same for all three."""
     if element is None:
         return ImuDescription()
     where = f"{where} <imu>"

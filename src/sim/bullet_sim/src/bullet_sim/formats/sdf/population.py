@@ -1,6 +1,6 @@
-"""Reads `<population>`: copies of one model, spread over a box or a cylinder.
+"""Reads `<population>`: copies of one model, distributed over a box or a cylinder.
 
-Where the copies stand depends on the population's name alone: each run has the same world.
+The copies' positions depend only on the population's name: each run has the same world.
 """
 
 import math
@@ -19,14 +19,14 @@ from bullet_sim.formats.xml_values import amount, child_text, integer, pose, vec
 from bullet_sim.pose import Pose, Vector3
 
 MOST_MODELS = 1000
-CANDIDATES = 20  # tried for each place of an even spread
+CANDIDATES = 20  # tried for each position of a uniform distribution
 DISTRIBUTIONS = ("random", "uniform", "grid", "linear-x", "linear-y", "linear-z")
 
 
 def read_population(element: Element, source: Source) -> list[ModelDescription]:
-    """The copies, called `NAME_clone_0` and so on.
+    """The copies, named `NAME_clone_0` and so on.
 
-    FormatError without a <model>, and for an unknown distribution.
+    FormatError if there is no <model>, and for an unknown distribution.
     """
     name = element.get("name", "")
     where = f"population {name!r}"
@@ -68,7 +68,7 @@ def _places(element: Element, name: str, where: str) -> list[Vector3]:
 
 
 def _grid(element: Element, where: str) -> Iterator[Vector3]:
-    """Rows along x, columns along y, about the middle."""
+    """Rows along x, columns along y, around the centre."""
     rows = _limited(integer(element, "distribution/rows", 1, where), where)
     columns = _limited(integer(element, "distribution/cols", 1, where), where)
     _limited(rows * columns, where)
@@ -85,7 +85,7 @@ def _limited(count: int, where: str) -> int:
 
 
 def _region(element: Element, where: str) -> tuple[Vector3, Callable[[np.ndarray], bool]]:
-    """Lengths of the box around the region, and what is inside of it."""
+    """Lengths of the region's bounding box, and the test for points inside the region."""
     cylinder = element.find("cylinder")
     if cylinder is None:
         return vector(element, "box/size", (1.0, 1.0, 1.0), f"{where} <box>"), lambda place: True

@@ -1,4 +1,4 @@
-"""Reads `<road>`: a band on the ground that is drawn and touches nothing."""
+"""Reads `<road>`: a band on the ground that is drawn but never collides."""
 
 from xml.etree.ElementTree import Element
 
@@ -10,7 +10,7 @@ from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import amount, bounded, numbers
 from bullet_sim.pose import Pose
 
-LIFT = Pose((0.0, 0.0, 0.005))  # m, above the ground it lies in
+LIFT = Pose((0.0, 0.0, 0.005))  # m, above the ground it is drawn on
 
 
 def read_road(element: Element, source: Source) -> Visual:

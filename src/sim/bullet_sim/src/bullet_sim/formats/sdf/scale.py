@@ -1,4 +1,4 @@
-"""Enlarges the shapes of a model: what the scale tool of Gazebo's window leaves in a `<state>`."""
+"""Scales the shapes of a model: what the scale tool of Gazebo's client writes into a `<state>`."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ from bullet_sim.pose import Vector3
 
 def scaled_model(model: description.ModelDescription,
                  factors: Vector3) -> description.ModelDescription:
-    """Shapes grow about their own middles; no pose, no mass changes (Gazebo's Link::SetScale)."""
+    """Shapes grow about their own centres; no pose or mass changes (Gazebo's Link::SetScale)."""
     return replace(model, links=tuple(
         replace(
             link,
@@ -24,7 +24,7 @@ def _scaled_parts(parts: tuple, factors: Vector3) -> tuple:
 
 
 def scaled(shape: description.Geometry, factors: Vector3) -> description.Geometry:
-    """A shape along its own axes; round ones stay round, by their greatest factor."""
+    """A shape scaled along its own axes; round ones stay round, by their largest factor."""
     x, y, z = factors
     match shape:
         case description.Box(size):

@@ -6,11 +6,11 @@ from bullet_sim.description import Fog, SceneDescription
 from bullet_sim.formats.xml_values import child_text, colour, fields, flag, number, one_of
 
 FOGS = {"none": "none", "linear": "linear", "exp": "exp", "exp2": "exp2",
-        "constant": "exp", "quadratic": "exp2"}  # the last two are how SDF's own text calls them
+        "constant": "exp", "quadratic": "exp2"}  # the last two are the names in SDF's own text
 
 
 def read_scene(element: Element | None, world: str) -> SceneDescription:
-    """Everything that does not depend on the camera."""
+    """The scene: everything that does not depend on the camera."""
     usual = SceneDescription()
     if element is None:
         return usual

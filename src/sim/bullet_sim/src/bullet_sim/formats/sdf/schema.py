@@ -1,4 +1,4 @@
-"""Reports unknown elements of an SDF text: most often they are misspelt."""
+"""Reports unknown elements of an SDF text: usually they are misspelt."""
 
 import tomllib
 from collections.abc import Iterator
@@ -9,8 +9,8 @@ from bullet_sim.errors import did_you_mean
 from bullet_sim.formats.resources import DATA_FOLDER
 from bullet_sim.formats.source import Source
 
-MOST_WARNINGS = 20  # of one file; a file of another kind has thousands of strange elements
-ALIKE = 0.75  # of a misspelt tag to the one that was meant, 0..1
+MOST_WARNINGS = 20  # of one file; a file of another format has thousands of unknown elements
+ALIKE = 0.75  # similarity of a misspelt tag and the intended one, 0..1
 
 
 @cache
@@ -23,10 +23,10 @@ def known_children() -> dict[str, frozenset[str]]:
 def warn_of_unknown_elements(root: Element, source: Source, file: str = "") -> None:
     """One warning for each kind of unknown element, with the name that was probably meant.
 
-    A tag with a colon is somebody's extension and silently accepted.
+    A tag with a colon is an extension and silently accepted.
     """
     prefix = f"{file}: " if file else ""
-    first: dict[tuple[str, str], str] = {}  # (parent, tag) -> where it was first met
+    first: dict[tuple[str, str], str] = {}  # (parent, tag) -> where it was first found
     for parent, tag, place in _strange(root, "", ""):
         first.setdefault((parent, tag), place)
     for (parent, tag), place in list(first.items())[:MOST_WARNINGS]:
@@ -37,7 +37,7 @@ def warn_of_unknown_elements(root: Element, source: Source, file: str = "") -> N
 
 
 def _is_old_pose(element: Element) -> bool:
-    """The pose of the oldest files, which `xml_values.pose` reads; a URDF origin is no such."""
+    """Whether it is a pose of the oldest files, read by `xml_values.pose`, not a URDF origin."""
     return element.tag == "origin" and element.get("pose") is not None
 
 

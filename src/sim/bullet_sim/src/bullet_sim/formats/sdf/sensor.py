@@ -25,10 +25,10 @@ def read_plugins(element: Element) -> tuple[PluginDescription, ...]:
 
 
 def read_sensor(element: Element, link: str) -> SensorDescription:
-    """A sensor of a link, with the cameras or rays it has."""
+    """A sensor of a link, with its cameras or rays."""
     name, kind = element.get("name", ""), element.get("type", "")
     where = f"{link}, sensor {name!r}"
-    # A missing <camera> or <ray> is made of defaults.
+    # A missing <camera> or <ray> has the defaults.
     cameras = element.findall("camera") or [Element("camera")] * (kind in CAMERA_TYPES)
     rays = [*element.findall("ray"), *element.findall("lidar")]
     rays = rays or [Element("ray")] * (kind in RAY_TYPES)

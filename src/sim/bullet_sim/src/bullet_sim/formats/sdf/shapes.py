@@ -18,7 +18,7 @@ NEVER_BOUNCES, FASTEST_BOUNCE = 1e5, 1e3  # m/s; the first is SDF's default
 
 
 def read_visual(element: Element, source: Source, link: str) -> description.Visual | None:
-    """A visual; None, with one line given, where its shape cannot be had."""
+    """A visual; None, with a line logged, if its shape cannot be used."""
     where, shape = _shape(element, source, link)
     if shape is None:
         return None
@@ -35,7 +35,7 @@ def read_visual(element: Element, source: Source, link: str) -> description.Visu
 
 
 def read_collision(element: Element, source: Source, link: str) -> description.Collision | None:
-    """A collision; None, with one line given, where its shape cannot be had."""
+    """A collision; None, with a line logged, if its shape cannot be used."""
     where, shape = _shape(element, source, link)
     if shape is None:
         return None
@@ -67,7 +67,7 @@ def _is_flat(shape: description.Geometry) -> bool:
 
 def _shape(element: Element, source: Source, link: str
            ) -> tuple[str, description.Geometry | None]:
-    """How errors call a visual or collision, in URDF most have no name; and its shape."""
+    """The text for a visual or collision in errors, as most in URDF have no name; and its shape."""
     name = element.get("name", "")
     where = f"{link}, {element.tag} {name!r}" if name else f"{link}, <{element.tag}>"
     return where, or_without(read_geometry, element.find("geometry"), source, where)
@@ -92,7 +92,7 @@ def read_surface(element: Element | None, where: str) -> description.Surface:
 
 
 def _restitution(element: Element, where: str) -> float:
-    """At most 1; 0 where the speed from which on things bounce is out of reach, as by default."""
+    """At most 1; 0 if the speed at which things begin to bounce is out of reach, as by default."""
     threshold = xml.number(element, "bounce/threshold", NEVER_BOUNCES, where)
     bounce = xml.amount(element, "bounce/restitution_coefficient", 0.0, where)
     return min(bounce, 1.0) if threshold < FASTEST_BOUNCE else 0.0
@@ -100,9 +100,9 @@ def _restitution(element: Element, where: str) -> float:
 
 def read_geometry(element: Element | None, source: Source,
                   where: str) -> description.Geometry | None:
-    """The first shape we know; None for `<empty>`, or with a warning.
+    """The first known shape; None for `<empty>`, or with a warning.
 
-    FormatError of numbers that no shape has.
+    FormatError for impossible numbers.
     """
     for shape in () if element is None else element:
         if shape.tag == "polyline":
@@ -169,5 +169,5 @@ READERS = {
 
 
 def _friction(coefficient: float) -> float:
-    """Below zero means without limit (Gazebo's FrictionPyramid::SetMu)."""
+    """A negative value means no limit (Gazebo's FrictionPyramid::SetMu)."""
     return coefficient if coefficient >= 0 else UNLIMITED_FRICTION

@@ -1,4 +1,4 @@
-"""Applies the `<state>` of a saved world: its poses win over those the models were written with."""
+"""Applies the `<state>` of a saved world: its poses replace those written in the models."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -24,7 +24,7 @@ LATEST = 4e9  # s; ROS counts to 2**32
 
 
 def apply_state(world: WorldDescription, state: Element) -> WorldDescription:
-    """The world as it was saved; names that do not exist (any more) are passed over.
+    """The world as it was saved; names that do not exist (any more) are ignored.
 
     Values that would be a FormatError keep their defaults, with an error line.
     """
@@ -101,9 +101,9 @@ def _link_poses(state: Element, scope: str, where: str) -> Iterator[tuple[str, P
 
 
 def _with_saved_joints(model: ModelDescription, saved: Mapping[str, Pose]) -> ModelDescription:
-    """The model with `start` of its joints of one axis; `saved` are link poses in the world.
+    """The model with `start` of its single-axis joints; `saved` are link poses in the world.
 
-    The links' own poses stay as they were written: with these every joint is at zero.
+    The links' own poses stay as written: with these every joint is at zero.
     """
     written = {link.name: model.pose * link.pose for link in model.links}
     now = {name: saved.get(name, pose) for name, pose in written.items()}
@@ -113,7 +113,7 @@ def _with_saved_joints(model: ModelDescription, saved: Mapping[str, Pose]) -> Mo
 
 def _position(joint: JointDescription, written: Mapping[str, Pose],
               now: Mapping[str, Pose]) -> float:
-    """Angle (rad) or travel (m) between the written and the present pose of the child."""
+    """Angle (rad) or travel (m) between the written and the saved pose of the child."""
     length = math.hypot(*joint.axis)
     known = joint.child in now and joint.parent in ("world", *now)
     if joint.type not in (*TURNING, "prismatic") or not known or length == 0.0:

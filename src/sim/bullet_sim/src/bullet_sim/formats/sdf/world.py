@@ -28,7 +28,7 @@ from bullet_sim.formats.xml_values import fields, integer, number, vector
 
 
 def read_world(element: Element, source: Source) -> WorldDescription:
-    """A `<world>`, its models in the order of the file."""
+    """A `<world>`, with its models in the order of the file."""
     where = f"world {element.get('name', 'default')!r}"
     usual = WorldDescription()
     physics = _physics_element(element)
@@ -56,7 +56,7 @@ def read_world(element: Element, source: Source) -> WorldDescription:
 def _with_insertions(
     world: WorldDescription, state: Element, source: Source
 ) -> WorldDescription:
-    """Entities that were inserted after the world was opened; those that the file has are kept."""
+    """Add entities that were inserted after the world was opened; those in the file are kept."""
     models = {model.name: model for model in world.models}
     for model in all_that_can(read_model, state.findall("insertions/model"), source):
         models.setdefault(model.name, model)
@@ -67,7 +67,7 @@ def _with_insertions(
 
 
 def _physics_element(element: Element) -> Element:
-    """The profile marked as default, else the first."""
+    """The profile marked as default, else the first one."""
     profiles = element.findall("physics")
     marked = [profile for profile in profiles if profile.get("default") in ("true", "1")]
     return (marked or profiles or [Element("physics")])[0]
@@ -95,9 +95,9 @@ def _read_physics(element: Element, world: str) -> PhysicsDescription:
 
 
 def _spherical(element: Element | None, world: str) -> SphericalDescription | None:
-    """Where on Earth the world is; None where the file does not say.
+    """Location of the world on Earth; None if the file does not give it.
 
-    Of surface models there is WGS84 alone, of world frames east-north-up, whatever is written.
+    The surface model is always WGS84 and the world frame east-north-up, whatever is written.
     """
     if element is None:
         return None
@@ -118,14 +118,14 @@ READERS: dict[str, Callable[[Element, Source], Entity | Visual | None]] = {
 
 @dataclass
 class Entities:
-    """In the order of the file, each kind with names that are unique."""
+    """Entities in the order of the file, with unique names within each kind."""
 
     models: dict[str, ModelDescription] = field(default_factory=dict)
     lights: dict[str, LightDescription] = field(default_factory=dict)
     roads: dict[str, Visual] = field(default_factory=dict)
 
     def add(self, entity: Entity, source: Source) -> None:
-        """Put it in; a name that is taken is changed, with a warning."""
+        """Add an entity; a name that is taken is changed, with a warning."""
         kind = "model" if isinstance(entity, ModelDescription) else "light"
         there = self.models if kind == "model" else self.lights
         name = _own_name(entity.name, kind, there, source)
@@ -163,7 +163,7 @@ def read_entities(element: Element, source: Source) -> Entities:
 
 
 def _read(child: Element, source: Source) -> list[Entity | Visual]:
-    """What one element of a world brings; nothing where it is no such thing."""
+    """The content of one element of a world; empty if it is none of these kinds."""
     if child.tag == "population":
         return read_population(child, source)
     entity = READERS[child.tag](child, source) if child.tag in READERS else None

@@ -1,4 +1,4 @@
-"""What `<gazebo>` tags add to a URDF's links and joints, written into SDF elements."""
+"""Converts the `<gazebo>` tags of a URDF's links and joints to SDF elements."""
 
 import copy
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ FALSE_WORDS = ("false", "no", "0")
 
 
 class Extensions:
-    """The children of all `<gazebo>` elements by what they refer to; blocks accumulate."""
+    """The children of all `<gazebo>` elements by their reference; blocks accumulate."""
 
     def __init__(self, robot: Element):
         self._by_reference: dict[str, list[Element]] = {}
@@ -36,11 +36,11 @@ class Extensions:
         return self._by_reference.get(reference, [])
 
     def references(self) -> Iterator[str]:
-        """The names that are referred to."""
+        """The names in references."""
         return (name for name in self._by_reference if name)
 
     def says(self, reference: str, tag: str) -> bool:
-        """Whether the last such tag holds true."""
+        """Whether the last such tag is true."""
         values = [value_of(child) for child in self.of(reference) if child.tag == tag]
         return bool(values) and is_true(values[-1])
 
@@ -51,15 +51,15 @@ def value_of(element: Element) -> str:
 
 
 def is_true(text: str) -> bool:
-    """True as the robot-level tags spell it."""
+    """Whether a text is true, as in robot-level tags."""
     return text.lower() in TRUE_WORDS
 
 
 def extend_link(link: Element, tags: list[Element], lumped: bool) -> None:
-    """Writes a link's extensions into its SDF element.
+    """Add a link's extensions to its SDF element.
 
-    After lumping a child's shapes are known only by name: those whose own URDF name lacks the
-    link's name get nothing.
+    After lumping a child's shapes are only known by name: those whose own URDF name does not
+    contain the link's name get nothing.
     """
     name = link.get("name", "")
     for tag in tags:
@@ -74,7 +74,7 @@ def extend_link(link: Element, tags: list[Element], lumped: bool) -> None:
 
 
 def _targets(tag: Element) -> str | None:
-    """Which parts of the link a tag goes to; None for the link itself."""
+    """The tag of the parts of the link that a tag applies to; None for the link itself."""
     if tag.tag in ("material", "visual"):
         return "visual"
     if tag.tag == "collision" or tag.tag in SURFACE_PATHS:
@@ -118,7 +118,7 @@ def _extend_link_itself(link: Element, tag: Element) -> None:
 
 
 def put(element: Element, path: str, value: str) -> None:
-    """Sets the text at a path, making what is missing on the way."""
+    """Set the text at a path, creating missing elements."""
     for tag in path.split("/"):
         child = element.find(tag)
         element = child if child is not None else SubElement(element, tag)
@@ -126,7 +126,7 @@ def put(element: Element, path: str, value: str) -> None:
 
 
 def merge(element: Element, addition: Element) -> None:
-    """Adds a child; where both have a container of that tag, their children come together."""
+    """Add a child; if both have a container of that tag, their children are merged."""
     there = element.find(addition.tag) if addition.tag in CONTAINERS else None
     if there is None:
         element.append(copy.deepcopy(addition))

@@ -1,4 +1,4 @@
-"""Properties of a URDF for controllers: limits of joints, where they are, wheel radii."""
+"""Properties of a URDF for controllers: joint limits, joint poses, wheel radii."""
 
 from collections.abc import Callable
 from xml.etree.ElementTree import Element
@@ -13,7 +13,7 @@ from bullet_sim.pose import IDENTITY, Pose
 class RobotFacts:
     """The joints and links of a `<robot>` as written; nothing is lumped, moved or left out.
 
-    FormatError of a robot whose links and joints are no tree.
+    FormatError if the robot's links and joints are not a tree.
     """
 
     def __init__(self, robot: Element):

@@ -1,4 +1,4 @@
-"""Reads URDF joints that move, or that are kept although fixed, with their `<gazebo>` tags."""
+"""Reads URDF joints that move, or are kept although fixed, with their `<gazebo>` tags."""
 
 import logging
 from dataclasses import replace
@@ -21,9 +21,9 @@ SPRINGS = {"springReference": "spring_reference", "springStiffness": "spring_sti
 
 
 def read_urdf_joint(joint: UrdfJoint, parent: str, extensions: Extensions) -> JointDescription:
-    """A joint below `parent`, the link that its written parent was lumped into.
+    """A joint below `parent`, the link into which its written parent was lumped.
 
-    FormatError for numbers that are none.
+    FormatError for invalid numbers.
     """
     where = f"joint {joint.name!r}"
     described = JointDescription(
@@ -33,10 +33,10 @@ def read_urdf_joint(joint: UrdfJoint, parent: str, extensions: Extensions) -> Jo
         return replace(
             described, axis=_axis(joint.element, where), **_limits(joint, where),
             **_dynamics(joint.element, where), **_springs(joint.name, extensions))
-    if (extensions.says(joint.name, "preserveFixedJoint")  # which wins
+    if (extensions.says(joint.name, "preserveFixedJoint")  # this one wins
             or not extensions.says(joint.name, "disableFixedJointLumping")):
         return described
-    return replace(described, type="revolute", lower=0.0, upper=0.0)  # that cannot turn
+    return replace(described, type="revolute", lower=0.0, upper=0.0)  # cannot turn
 
 
 def _axis(element: Element, where: str) -> Vector3:

@@ -1,4 +1,4 @@
-"""Writes a URDF link's shapes as SDF elements, so that `<gazebo>` tags can merge into them."""
+"""Writes a URDF link's shapes as SDF elements, so that `<gazebo>` tags can be merged into them."""
 
 from functools import partial
 from xml.etree.ElementTree import Element, SubElement
@@ -17,11 +17,10 @@ DIAGONAL = ("ixx", "iyy", "izz")  # the products of inertia may be negative
 
 
 def read_urdf_link(link: Element) -> tuple[Element, Inertial | None, FormatError | None]:
-    """An SDF `<link>` as of `link_as_sdf`, what `read_urdf_inertial` finds, and what was wrong.
+    """An SDF `<link>` as from `link_as_sdf`, the result of `read_urdf_inertial`, and the error.
 
-    As in urdfdom's link.cpp, parseLink, what cannot be read is an error line, and neither it nor
-    what comes after it in the link is there; inertial, visuals and collisions are read in this
-    order.
+    As in urdfdom's link.cpp, parseLink, an unreadable part is an error line, and it and everything
+    after it in the link is left out; inertial, visuals and collisions are read in this order.
     """
     shapes, inertial, wrong = _named_link(link), None, None
     try:
@@ -36,7 +35,7 @@ def read_urdf_link(link: Element) -> tuple[Element, Inertial | None, FormatError
 def link_as_sdf(link: Element) -> Element:
     """An SDF `<link>` with the URDF link's shapes; their names are still URDF's, often empty.
 
-    FormatError for a geometry that is none.
+    FormatError for an invalid geometry.
     """
     result = _named_link(link)
     _add_shapes(result, link)
@@ -56,7 +55,7 @@ def _add_shapes(result: Element, link: Element) -> None:
 def read_urdf_inertial(link: Element) -> Inertial | None:
     """A link's mass and tensor; None without `<inertial>` or with mass 0.
 
-    FormatError for numbers that are none.
+    FormatError for invalid numbers.
     """
     element = link.find("inertial")
     if element is None:
@@ -76,7 +75,7 @@ def read_urdf_inertial(link: Element) -> Inertial | None:
 
 
 def _possible(value: float, where: str, positive: bool = True) -> float:
-    """A mass or moment of inertia; SDF's default, with an error line, for one that cannot be."""
+    """A mass or moment of inertia; SDF's default, with an error line, if it is impossible."""
     check = xml.not_negative if positive else xml.bounded
     return xml.or_default(partial(check, (value,), where), (float(positive),))[0]
 
@@ -88,8 +87,8 @@ def _attribute(element: Element | None, key: str, where: str) -> float:
 
 
 def _part_as_sdf(part: Element, where: str) -> list[Element]:
-    """One SDF element; three for a capsule, which SDF 1.7 has no word for."""
-    place = read_origin(part, where)  # complains in URDF's terms
+    """One SDF element; three for a capsule, which SDF 1.7 does not have."""
+    place = read_origin(part, where)  # errors in URDF's terms
     shapes = _plain_shapes(part.find("geometry"), where)
     result = []
     for shape, offset in shapes:
@@ -104,7 +103,7 @@ def _part_as_sdf(part: Element, where: str) -> list[Element]:
 def _plain_shapes(
     geometry: Element | None, where: str
 ) -> list[tuple[Element | None, float]]:
-    """The shapes that make up a geometry, and how far along z each is, m."""
+    """The shapes that make up a geometry, and the offset of each along z, m."""
     shape = None if geometry is None or len(geometry) == 0 else geometry[0]
     if shape is None or shape.tag != "capsule":
         return [(shape, 0.0)]

@@ -32,7 +32,7 @@ OFFSETS = ("xyzOffset", "rpyOffset")
 
 @dataclass
 class Body:
-    """A link while things are lumped into it; shapes keep their first owner's name or their own."""
+    """A link during lumping; shapes keep their first owner's name or their own."""
 
     link: LinkDescription
     inertial: Inertial | None
@@ -44,7 +44,7 @@ class Body:
 
     @staticmethod
     def of(link: LinkDescription, inertial: Inertial | None) -> Body:
-        """A body that is one link so far."""
+        """A body that is only one link so far."""
         return Body(
             link, inertial,
             [(link.name, shape.name or link.name, shape) for shape in link.visuals],
@@ -53,7 +53,7 @@ class Body:
         )
 
     def take_in(self, child: Body, origin: Pose) -> None:
-        """Everything of `child`, whose frame is at `origin` here."""
+        """Take in everything of `child`, whose frame is at `origin` here."""
         self.inertial = combined(self.inertial, child.inertial, origin)
         self.visuals += [(owner, stem, _moved(s, origin)) for owner, stem, s in child.visuals]
         self.collisions += [(owner, stem, _moved(s, origin)) for owner, stem, s in child.collisions]
@@ -78,7 +78,7 @@ class Body:
 def lump(
     tree: UrdfTree, bodies: dict[str, Body], is_lumped: Callable[[UrdfJoint], bool]
 ) -> dict[str, Body]:
-    """The surviving bodies by link name, each with what it took in, children's children first."""
+    """The surviving bodies by link name, each with what it took in, deepest children first."""
     surviving = dict(bodies)
 
     def gather(name: str) -> None:
@@ -106,7 +106,7 @@ def combined(parent: Inertial | None, child: Inertial | None, origin: Pose) -> I
         turn = rotation_matrix(part.pose.orientation)
         arm = np.array(part.pose.position) - centre
         tensor += turn @ symmetric_matrix(part.inertia) @ turn.T
-        tensor += part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))  # parallel axes
+        tensor += part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))  # parallel axis theorem
     six = tuple(float(tensor[i, j]) for i, j in zip(*np.triu_indices(3), strict=True))
     return Inertial(mass=mass, pose=Pose(tuple(map(float, centre))), inertia=six)
 
@@ -118,12 +118,12 @@ def _moved(part, origin: Pose):
 def _named(
     link: str, shapes: list[tuple[str, str, Visual | Collision]], ending: str
 ) -> tuple[tuple, dict[str, str]]:
-    """Shapes with sdformat's names, and for each the name it would have had unlumped."""
+    """Shapes with sdformat's names, and for each the name it would have without lumping."""
     named, renamed = [], {}
     own_count: dict[str, int] = {}
     for index, (owner, stem, shape) in enumerate(shapes):
         name = f"{stem}{ending}" + (f"_{index}" if index else "")
-        if not name.startswith(link):  # sdformat recognises lumped shapes by this prefix alone
+        if not name.startswith(link):  # sdformat recognises lumped shapes only by this prefix
             name = link + LUMP + name
         own_index = own_count.get(owner, 0)
         own_count[owner] = own_index + 1
@@ -133,7 +133,7 @@ def _named(
 
 
 def _with_contact_names(sensor: SensorDescription, renamed: dict[str, str]) -> SensorDescription:
-    """A contact sensor that names a collision finds it under its name after lumping."""
+    """Rename the collisions that a contact sensor names to their names after lumping."""
     if sensor.element is None or sensor.element.find("contact/collision") is None:
         return sensor
     element = copy.deepcopy(sensor.element)
@@ -146,7 +146,7 @@ def _with_contact_names(sensor: SensorDescription, renamed: dict[str, str]) -> S
 def follow_lumping(
     plugin: PluginDescription, lumped: dict[str, tuple[str, Pose]]
 ) -> PluginDescription:
-    """A plugin whose `bodyName` or `frameName` was lumped names the survivor, with offsets."""
+    """Replace a plugin's lumped `bodyName` or `frameName` by the survivor, with offsets."""
     element = copy.deepcopy(plugin.element)
     origin = None
     for tag in ("bodyName", "frameName"):

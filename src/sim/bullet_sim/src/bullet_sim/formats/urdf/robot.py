@@ -1,6 +1,6 @@
 """Reads a URDF robot by the rules of sdformat's parser_urdf.cc.
 
-That is `<gazebo>` tags, lumping, and links without mass dropped.
+That includes `<gazebo>` tags, lumping, and dropping links without mass.
 """
 
 import copy
@@ -26,7 +26,7 @@ KEEP_FIXED_JOINT = ("preserveFixedJoint", "disableFixedJointLumping")
 
 
 def read_robot(robot: Element, source: Source) -> ModelDescription:
-    """A `<robot>` as the SDF that it is converted to. FormatError as of `read_tree`."""
+    """A `<robot>` as converted to SDF. FormatError as from `read_tree`."""
     tree = read_tree(robot)
     extensions = Extensions(robot)
     _warn_of_unknown_references(tree, extensions, source)
@@ -105,7 +105,7 @@ def _with_robot_level(
     lumped: dict[str, tuple[str, Pose]],
     source: Source,
 ) -> ModelDescription:
-    """The model with what is in `<gazebo>` without a reference; other tags are SDF as written."""
+    """The model with the `<gazebo>` elements without reference; other tags are SDF as written."""
     extra = Element("model")
     extra.extend(extensions.of(""))
     where = f"robot {tree.name!r}"
@@ -131,7 +131,7 @@ def _with_robot_level(
 
 
 def _with_survivors(joint: Element, lumped: dict[str, tuple[str, Pose]]) -> Element:
-    """An SDF joint whose ends were lumped names the survivors.
+    """Replace the ends of an SDF joint that were lumped by the survivors.
 
     Its pose stays, as in sdformat's parser_urdf.cc, ReduceSDFExtensionJointFrameReplace.
     """

@@ -1,7 +1,7 @@
 """Reads `<transmission>` elements: which interface commands which joint.
 
-What cannot be used is left out with a line that says why, as transmission_interface's parser and
-gazebo_ros_control's DefaultRobotHWSim do; their types and reductions have no effect there either.
+Unusable ones are left out with a line that says why, as in transmission_interface's parser and
+gazebo_ros_control's DefaultRobotHWSim; types and reductions have no effect there either.
 """
 
 import logging
@@ -19,7 +19,7 @@ INTERFACES = {"EffortJointInterface": "effort", "PositionJointInterface": "posit
 
 @dataclass(frozen=True)
 class Transmission:
-    """One that the simulation can use."""
+    """A transmission that the simulation can use."""
 
     name: str
     joint: str
@@ -27,8 +27,8 @@ class Transmission:
 
 
 def read_transmissions(robot: Element) -> list[Transmission]:
-    """All usable ones of a `<robot>`, one a joint; a joint whose interface is none of the three
-    is a FormatError."""
+    """All usable ones of a `<robot>`, one per joint; FormatError for a joint with an interface
+    that is none of the three."""
     found: dict[str, Transmission] = {}
     for element in robot.findall("transmission"):
         made = _read(element)
@@ -60,7 +60,7 @@ def _read(element: Element) -> Transmission | None:
 
 
 def _fault(element: Element) -> str:
-    """What makes a transmission invalid; empty if nothing does."""
+    """Why a transmission is invalid; empty if it is valid."""
     if not (element.findtext("type") or "").strip():
         return "it has no <type>; usual is transmission_interface/SimpleTransmission"
     for tag in ("joint", "actuator"):

@@ -1,4 +1,4 @@
-"""The link tree of a URDF: its links and joints as a checked tree, children in urdfdom's order."""
+"""The link tree of a URDF: links and joints as a checked tree, children in urdfdom's order."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ JOINT_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "plan
 
 @dataclass(frozen=True)
 class UrdfJoint:
-    """A joint as written, with its place in the parent link's frame."""
+    """A joint as written, with its pose in the parent link's frame."""
 
     name: str
     type: str
@@ -28,7 +28,7 @@ class UrdfJoint:
 
 @dataclass
 class UrdfTree:
-    """All links by name, and which joints lead away from and into each."""
+    """All links by name, and the joints that lead away from and into each."""
 
     name: str
     root: str
@@ -43,7 +43,7 @@ class UrdfTree:
             yield from self.depth_first(joint.child)
 
     def poses(self) -> dict[str, Pose]:
-        """Links in the model frame with every joint at zero."""
+        """Poses of the links in the model frame with every joint at zero."""
         poses = {self.root: IDENTITY}
         for name in self.depth_first(self.root):
             for joint in self.outward.get(name, ()):
@@ -52,7 +52,7 @@ class UrdfTree:
 
 
 def read_tree(robot: Element) -> UrdfTree:
-    """The tree of a `<robot>`, or a FormatError that names what is wrong with it."""
+    """The tree of a `<robot>`, or a FormatError that says what is wrong."""
     name = robot.get("name", "")
     if not name:
         raise FormatError("<robot> has no name")
@@ -61,7 +61,7 @@ def read_tree(robot: Element) -> UrdfTree:
         raise FormatError(f"robot {name!r} has no links")
     joints = _named(robot, "joint", f"robot {name!r}")
     tree = UrdfTree(name, "", links)
-    for joint_name in sorted(joints):  # the std::map of urdfdom's ModelInterface
+    for joint_name in sorted(joints):  # as in the std::map of urdfdom's ModelInterface
         joint = _read_joint(joints[joint_name], links)
         other = tree.inward.setdefault(joint.child, joint)
         if other is not joint:
@@ -73,7 +73,7 @@ def read_tree(robot: Element) -> UrdfTree:
 
 
 def read_origin(element: Element, where: str) -> Pose:
-    """The `<origin>` of an element; identity when absent. FormatError of numbers that cannot be."""
+    """The `<origin>` of an element; identity if absent. FormatError for impossible numbers."""
     origin = element.find("origin")
     if origin is None:
         return Pose()
@@ -83,7 +83,7 @@ def read_origin(element: Element, where: str) -> Pose:
 
 
 def _possible(values: tuple[float, ...], where: str) -> tuple[float, ...]:
-    """Zeros, with an error line, for numbers that urdfdom takes and no engine can."""
+    """Zeros, with an error line, for numbers that urdfdom accepts but no engine can use."""
     return or_default(partial(bounded, values, where), (0.0, 0.0, 0.0))
 
 
@@ -131,13 +131,13 @@ def _root(tree: UrdfTree) -> str:
     reached = set(tree.depth_first(roots[0])) if roots else set()
     loop = [link for link in tree.links if link not in reached]
     if loop:
-        raise FormatError(f"robot {tree.name!r}: the joints go round in a circle through "
+        raise FormatError(f"robot {tree.name!r}: the joints form a loop through "
                           f"{', '.join(loop)}")
     return roots[0]
 
 
 def _depth(tree: UrdfTree, root: str) -> int:
-    """Joints from the root to the farthest link; links in a circle are not reached."""
+    """Joints from the root to the farthest link; links in a loop are not reached."""
     depth, level = 0, [root]
     while level := [joint.child for link in level for joint in tree.outward.get(link, ())]:
         depth += 1

@@ -1,7 +1,7 @@
-"""What a URDF robot looks like, by URDF's own rules: every link stays, and colours are the URDF's.
+"""The look of a URDF robot, by URDF's own rules: every link stays, and colours are the URDF's.
 
-A simulator drops links without mass and lumps others (`urdf/lumping.py`); who draws a robot by its
-transforms, as rviz does, needs each link.
+A simulator drops links without mass and lumps others (`urdf/lumping.py`); to draw a robot by its
+transforms, as rviz does, each link is needed.
 """
 
 from dataclasses import replace
@@ -22,9 +22,9 @@ RobotLinks = dict[str, tuple[Pose, tuple[Visual, ...]]]
 
 
 def read_robot_visuals(text: str, resources: Resources) -> tuple[str, RobotLinks]:
-    """The robot's name, and its links with their poses at joints zero, seen from the root.
+    """The robot's name, and its links with their poses at joints zero, relative to the root.
 
-    A visual that cannot be read is left out with one warning. FormatError for a text that is no
+    A visual that cannot be read is left out with one warning. FormatError for a text that is not
     URDF.
     """
     robot = parse_xml(text, "the robot description")
@@ -55,7 +55,7 @@ def _visuals(link: str, part: Element, named: dict[str, Element],
 
 
 def _material(part: Element, named: dict[str, Element], source: Source) -> Material | None:
-    """The visual's own, or the robot's of that name; None: as the mesh has it."""
+    """The visual's own material, or the robot's of that name; None: that of the mesh."""
     element = part.find("material")
     if element is None:
         return None

@@ -1,4 +1,4 @@
-"""Bounds of an expansion: how many parts it may have, and what one process may take for it."""
+"""Limits of an expansion: the number of parts, and the time and memory of its process."""
 
 import gc
 import mmap
@@ -19,29 +19,29 @@ from bullet_sim.formats.xacro.errors import one_line, place
 from bullet_sim.formats.xacro.nodes import replace_node
 
 MOST_PARTS = 15_000  # macro calls, properties, conditions, blocks; large robots have 3 000
-MOST_TEXTS = 150_000  # attributes and texts evaluated; TurtleBot3 has 110 for each link
-MOST_SECONDS = 3.5  # of processor time; large robots take 1
-LONG = 1.0  # s; an expression that took so long is what took the time
+MOST_TEXTS = 150_000  # attributes and texts evaluated; TurtleBot3 has 110 per link
+MOST_SECONDS = 3.5  # of CPU time; large robots take 1
+LONG = 1.0  # s; an expression that takes this long is named as the cause
 MOST_BYTES = 2**29
 NO_MEMORY = 70  # exit code of the process that expands
 NOTE_BYTES = 1024
 
-_note = mmap.mmap(-1, NOTE_BYTES)  # what is being evaluated, and since when; shared with the child
+_note = mmap.mmap(-1, NOTE_BYTES)  # current evaluation and its start; shared with the child
 
 
 class TooLarge(FormatError):
-    """An expansion went beyond a bound; another reading of the file will not do better."""
+    """An expansion exceeded a limit; reading the file in another way will not help."""
 
 
 class Budget:
-    """Counts what is put into the document, so that macros cannot grow it without bound."""
+    """Counts what is added to the document, so that macros cannot grow it without limit."""
 
     def __init__(self) -> None:
         self._parts = self._texts = 0
         self._eval_text = xacro.eval_text
 
     def replace_node(self, node: Any, by: Any, content_only: bool = False) -> None:
-        """xacro calls it once for each macro, property, condition, block, include.
+        """Called by xacro once for each macro, property, condition, block, include.
 
         TooLarge beyond MOST_PARTS.
         """
@@ -52,7 +52,7 @@ class Budget:
         replace_node(node, by, content_only)
 
     def eval_text(self, text: str, symbols: Any) -> Any:
-        """xacro calls it once for each attribute and text; most hold nothing to evaluate.
+        """Called by xacro once for each attribute and text; most have nothing to evaluate.
 
         TooLarge beyond MOST_TEXTS.
         """
@@ -64,7 +64,7 @@ class Budget:
 
 
 def noted_eval(evaluate: Callable[..., Any]) -> Callable[..., Any]:
-    """The same function, which records what it evaluates."""
+    """The same function, which also records what it evaluates."""
     def noted(expression: str, symbols: dict, local: dict | None = None) -> Any:
         line = f"{time.monotonic()} {place('xacro')}: ${{{one_line(expression[:200])}}}"
         _note[:] = line.encode()[:NOTE_BYTES].ljust(NOTE_BYTES, b"\0")
@@ -76,10 +76,10 @@ def noted_eval(evaluate: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECONDS) -> int:
-    """What `work` returns, as an exit code, from a process of its own that expands `file`.
+    """The exit code that `work` returns, in a separate process that expands `file`.
 
-    Expressions are Python: no bound inside the interpreter ends `10 ** 10 ** 10`. TooLarge says
-    what was being evaluated when the processor time ran out, if that is what took it.
+    Expressions are Python: no limit inside the interpreter stops `10 ** 10 ** 10`. TooLarge names
+    the expression that was evaluated when the CPU time ran out, if that took it.
     """
     sys.stdout.flush()
     _note[:1] = b"\0"
@@ -87,15 +87,15 @@ def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECOND
     if child == 0:
         code = 1
         try:
-            gc.disable()  # it would walk through the growing document again and again
-            signal.signal(signal.SIGPROF, signal.SIG_DFL)  # which ends the process
+            gc.disable()  # it would traverse the growing document again and again
+            signal.signal(signal.SIGPROF, signal.SIG_DFL)  # ends the process
             signal.setitimer(signal.ITIMER_PROF, seconds)
             limit_memory()
             code = work()
             sys.stdout.flush()
         except MemoryError:
             code = NO_MEMORY
-        except BrokenPipeError:  # nobody reads on
+        except BrokenPipeError:  # the reader has gone
             pass
         except Exception:
             traceback.print_exc()
@@ -113,9 +113,9 @@ def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECOND
 
 
 def limit_memory() -> None:
-    """Lets this process have MOST_BYTES on top of what it has from its parent.
+    """Limit this process to MOST_BYTES more than it has from its parent.
 
-    In one that is limited already, as check's reader of launch files is, it takes what that leaves:
+    If it is limited already, like check's reader of launch files, it uses what that leaves:
     only root may raise a limit.
     """
     held = int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
@@ -126,7 +126,7 @@ def limit_memory() -> None:
 
 
 def _what_took(long: float, file: str) -> str:
-    """The expression that ran until now, if for so many seconds; else all of the file."""
+    """The expression that has been running, if for at least `long` s; else the file."""
     began, _, noted = _note[:].rstrip(b"\0").decode(errors="replace").partition(" ")
     if _note[0] and time.monotonic() - float(began) >= long:
         return noted

@@ -1,4 +1,4 @@
-"""What went wrong in a xacro file, as one line for people: where, what, what to type."""
+"""Errors in xacro files as one line for users: where, what, what to do."""
 
 import os
 import re
@@ -11,7 +11,7 @@ from xacro import substitution_args
 from bullet_sim.errors import FormatError
 
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-LONGEST = 600  # letters of a line
+LONGEST = 600  # characters of a line
 UNSET = re.compile(r"environment variable '(\w+)' is not set")
 
 
@@ -31,7 +31,7 @@ def place(default: str) -> str:
 
 
 def root_of(error: BaseException) -> BaseException:
-    """The exception at the bottom of xacro's wrapping ones."""
+    """The innermost exception of xacro's wrapping ones."""
     while getattr(error, "exc", None) is not None:
         error = error.exc
     return error
@@ -56,7 +56,7 @@ def _reason(error: BaseException) -> str:
     if isinstance(root, ExpatError):
         return f"XML error: {root}{_xml_hint(root)}"
     text = one_line(str(error))
-    if not text or text.startswith("<class"):  # xacro's wording for what it did not expect
+    if not text or text.startswith("<class"):  # xacro's text for something unexpected
         text = f"{type(root).__name__}: {one_line(str(root))}"
     if text.startswith("unknown macro name: xacro:"):
         name = text.rpartition("xacro:")[2]
@@ -68,7 +68,7 @@ def _reason(error: BaseException) -> str:
 
 
 def includes_itself(files: list[str]) -> str:
-    """Of a stack of files whose last one is among them again and again."""
+    """The message for a stack of files in which the last one is repeated."""
     other = os.path.normpath(files[-2])
     if other == os.path.normpath(files[-1]):
         return "the file includes itself without end; put the <xacro:include> into an <xacro:if>"
@@ -76,13 +76,13 @@ def includes_itself(files: list[str]) -> str:
 
 
 def _variable_hint(text: str) -> str:
-    """How to set an environment variable that is not set."""
+    """How to set a missing environment variable."""
     named = UNSET.match(text)
     return f"; type export {named[1]}=VALUE, or write $(optenv {named[1]} DEFAULT)" if named else ""
 
 
 def _xml_hint(error: ExpatError) -> str:
-    """What to do about the usual mistakes."""
+    """Advice for the usual mistakes."""
     text = str(error)
     if text.startswith("unbound prefix"):
         return f"; declare it in the <robot> tag, such as {NAMESPACE}"

@@ -22,9 +22,9 @@ from bullet_sim.formats.xacro.expressions import evaluate, evaluate_substitution
 from bullet_sim.formats.xacro.nodes import Siblings
 from bullet_sim.formats.xacro.opening import load_yaml, parse
 
-FindPackage = Callable[[str], str]  # package name -> its folder; raises when there is none
+FindPackage = Callable[[str], str]  # package name -> its folder; raises if there is none
 
-# Python calls. Python's default of 1000 is for ROS's xacro, which needs fewer calls for a macro.
+# Python calls. Python's default of 1000 suits ROS's xacro, which needs fewer calls for a macro.
 DEEPEST = 2000
 KEYWORDS = frozenset(["arg", "if", "include", "insert_block", "macro", "property", "unless"])
 _ROBOT_TAGS = frozenset([
@@ -35,7 +35,7 @@ _ROBOT_TAGS = frozenset([
     "group", "group_state", "joint_property", "link_sphere_approximation", "passive_joint",
     "virtual_joint",
 ])
-BLOCK = "insert_block"  # nothing else has a tag of this name
+BLOCK = "insert_block"  # no other tag has this name
 _CONDITIONS = frozenset(["if", "unless"])
 _TAGS_OF_URDF = frozenset([
     "acceleration", "actuator", "axis", "box", "calibration", "capsule", "child", "collision",
@@ -47,7 +47,7 @@ _TAGS_OF_URDF = frozenset([
 
 @dataclass(frozen=True)
 class Run:
-    """What is to be expanded."""
+    """The input of an expansion."""
 
     path: str
     mappings: dict[str, str]
@@ -56,13 +56,13 @@ class Run:
 
 @dataclass(frozen=True)
 class Attempt:
-    """What came of one reading."""
+    """The result of one reading."""
 
     path: str
     document: minidom.Document
     files: tuple[str, ...]
     messages: list[tuple[int, str]]
-    macros: frozenset[str] = frozenset()  # the names of those that are defined
+    macros: frozenset[str] = frozenset()  # the names of the defined macros
 
     def text(self) -> str:
         """The document as XML. FormatError if it is nested too deep."""
@@ -82,16 +82,16 @@ class Attempt:
         return [tag for tag in tags if tag in KEYWORDS] + inside
 
     def has_unique_names(self) -> bool:
-        """Whether each link and each joint has a name of its own."""
+        """Whether all links and all joints have different names."""
         children = elements(self.document.documentElement)
         names = Counter((child.tagName, child.getAttribute("name")) for child in children)
         return all(n == 1 for (tag, _), n in names.items() if tag in ("link", "joint"))
 
 
 def _unanswered_inside(root: minidom.Element, macros: Collection[str]) -> list[str]:
-    """Tags below the top level that want the prefix: keywords, and calls of these macros.
+    """Tags below the top level that need the prefix: keywords, and calls of these macros.
 
-    In a `<gazebo>` tag and in SDF only blocks count: a macro may be named as SDF's `<camera>`.
+    In a `<gazebo>` tag and in SDF only blocks count: a macro may be named like SDF's `<camera>`.
     """
     found = [BLOCK] * len(root.getElementsByTagName(BLOCK))
     if root.tagName != "robot":
@@ -105,7 +105,7 @@ def _unanswered_inside(root: minidom.Element, macros: Collection[str]) -> list[s
 
 
 def attempt(run: Run, replacements: dict[str, Any]) -> Attempt:
-    """Expands once, with these functions of xacro replaced; FormatError (TooLarge) is one line."""
+    """Expand once, with these functions of xacro replaced; FormatError (TooLarge) is one line."""
     messages, macros = _Messages(), set()
     grab = replacements.get("grab_macro", xacro.grab_macro)
 
@@ -127,7 +127,7 @@ def attempt(run: Run, replacements: dict[str, Any]) -> Attempt:
 
 
 def _only_text(document: minidom.Document) -> None:
-    """<xacro:attribute> leaves numbers behind that cannot be written."""
+    """Make text of numbers from <xacro:attribute>, which cannot be written otherwise."""
     for element in document.getElementsByTagName("*"):
         for attribute in element.attributes.values():
             if not isinstance(attribute.value, str):
@@ -138,7 +138,7 @@ def _only_text(document: minidom.Document) -> None:
 def _private_state(
     replacements: dict[str, Any], messages: _Messages, find_package: FindPackage | None
 ) -> Iterator[None]:
-    """Fresh module variables for one expansion; the old ones come back afterwards."""
+    """Fresh module variables for one expansion; the old ones are restored afterwards."""
     budget = Budget()
     fresh = {
         "message": messages.at(logging.INFO), "warning": messages.at(logging.WARNING),
@@ -180,13 +180,13 @@ def _swapped(table: dict[str, Any], values: dict[str, Any]) -> Iterator[None]:
 
 
 class _Messages:
-    """Stands in for xacro's own messages, which would go to the terminal."""
+    """Replaces xacro's own messages, which would go to the terminal."""
 
     def __init__(self) -> None:
         self.lines: list[tuple[int, str]] = []
 
     def at(self, level: int) -> Callable[..., None]:
-        """A function of xacro's that keeps a line, to be logged when the expansion is over."""
+        """A function for xacro that keeps a line, to be logged when the expansion is over."""
         def keep(*words: object, **_: object) -> None:
             text = one_line(" ".join(map(str, words)))
             self.lines.append((level, f"{place('xacro')}: {text}"))
@@ -200,7 +200,7 @@ def _finder(find_package: FindPackage | None) -> FindPackage:
             raise FormatError(f"$(find {name}): packages cannot be looked up here")
         try:
             return str(find_package(name))
-        except Exception as error:  # each resolver has its own way of saying no
+        except Exception as error:  # each resolver has its own exceptions
             raise FormatError(f"$(find {name}): package not found: {error}") from error
 
     return find

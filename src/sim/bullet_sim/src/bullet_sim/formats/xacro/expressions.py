@@ -1,8 +1,8 @@
-"""xacro's `${…}` and `$(eval …)`: Python expressions, by an allow-list over Python's syntax tree.
+"""xacro's `${…}` and `$(eval …)`: Python expressions, by an allow-list for Python's syntax tree.
 
-A file's author may compute, and reach nothing else: no lambda, no assignment, and of each value
-only the attributes listed here. Names are those that xacro hands over, without `vars`; `type` takes
-one value.
+A file's author may compute, but reach nothing else: no lambda, no assignment, and only the
+attributes of values that are listed here. Names are those passed by xacro, without `vars`; `type`
+takes one value.
 """
 
 import ast
@@ -42,11 +42,11 @@ METHODS = {
         complex: "conjugate imag real",
     }.items()
 }
-_ATTRIBUTE = "<attribute>"  # no name that a file could write
+_ATTRIBUTE = "<attribute>"  # a name that no file can write
 
 
 def evaluate(expression: str, symbols: dict, local: Mapping | None = None) -> Any:
-    """The value of an expression; stands for xacro's `safe_eval`, and in `$(eval …)` for `eval`.
+    """The value of an expression; replaces xacro's `safe_eval`, and in `$(eval …)` `eval`.
 
     FormatError names what is not allowed; else whatever the expression raises.
     """
@@ -55,7 +55,7 @@ def evaluate(expression: str, symbols: dict, local: Mapping | None = None) -> An
 
 
 def evaluate_substitution(expression: str, _symbols: dict, local: Mapping) -> Any:
-    """Stands for `eval` in `$(eval …)` of xacro and of roslaunch: with the builtins of `${…}`.
+    """Replaces `eval` in `$(eval …)` of xacro and of roslaunch: with the builtins of `${…}`.
 
     FormatError names what is not allowed; else whatever the expression raises.
     """
@@ -70,7 +70,7 @@ def restricted(symbols: dict) -> dict:
     return symbols
 
 
-@functools.lru_cache(maxsize=1024)  # a macro's expressions come again with each call
+@functools.lru_cache(maxsize=1024)  # a macro's expressions are evaluated again in each call
 def _compiled(expression: str) -> CodeType:
     tree = ast.parse(expression, "<expression>", "eval")
     for node in ast.walk(tree):
@@ -83,7 +83,7 @@ def _compiled(expression: str) -> CodeType:
 
 
 class _Attributes(ast.NodeTransformer):
-    """Has `value.name` ask `_attribute`."""
+    """Turns `value.name` into a call of `_attribute`."""
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         value = self.visit(node.value)
@@ -92,7 +92,7 @@ class _Attributes(ast.NodeTransformer):
 
 
 def _attribute(value: Any, name: str) -> Any:
-    """What `value.name` is; FormatError where it is not for expressions."""
+    """The value of `value.name`; FormatError if it is not allowed in expressions."""
     if isinstance(value, xacro.NameSpace):
         if name not in value:
             raise NameError(f"name '{name}' is not defined")
@@ -109,7 +109,7 @@ def _attribute(value: Any, name: str) -> Any:
 
 
 class _Formatter(string.Formatter):
-    """`str.format`, whose fields can be names and numbers alone: `{0.real}` reaches attributes."""
+    """`str.format` with only names and numbers as fields: `{0.real}` reaches attributes."""
 
     def get_field(self, field_name: str, args: Sequence, kwargs: Mapping) -> tuple[Any, Any]:
         if "." in field_name or "[" in field_name:

@@ -1,4 +1,4 @@
-"""Expands xacro files with PyPI's xacro, and old ones as the releases they were written for did."""
+"""Expands xacro files with PyPI's xacro, and old ones as in the releases they were written for."""
 
 import logging
 import threading
@@ -17,10 +17,10 @@ _LOGGER = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Expansion:
-    """What a file became."""
+    """The result of expanding a file."""
 
     text: str  # the XML document
-    files: tuple[str, ...]  # what it read besides itself, in order
+    files: tuple[str, ...]  # other files that it read, in order
 
 
 def expand(
@@ -37,12 +37,12 @@ def expand_file(
     mappings: Mapping[str, str] | None = None,
     find_package: FindPackage | None = None,
 ) -> Expansion:
-    """As `expand`, and which other files took part; FormatError names file, place and reason.
+    """As `expand`, and the other files involved; FormatError names file, place and reason.
 
-    Read strictly first. When that fails or leaves tags that URDF does not know, the file may be an
-    old one: macros and keywords then also count without their prefix (Melodic), and if it fails
-    still, macros and properties also before they are defined (Indigo to Lunar). Such a result is
-    kept if no two links and no two joints share a name.
+    The file is first read strictly. If that fails or leaves tags that URDF does not know, the file
+    may be old: macros and keywords then also count without prefix (Melodic), and if that fails,
+    macros and properties also before their definition (Indigo to Lunar). Such a result is kept if
+    no two links and no two joints have the same name.
     """
     run = Run(str(path), dict(mappings or {}), find_package)
     with _LOCK:
@@ -53,7 +53,7 @@ def expand_file(
 
 
 def _choose(run: Run) -> Attempt:
-    """The strict reading, or an older one where that is better; see `expand_file`."""
+    """The strict reading, or an older one if that is better; see `expand_file`."""
     strict, problem = None, None
     try:
         strict = attempt(run, {})
@@ -70,7 +70,7 @@ def _choose(run: Run) -> Attempt:
         if melodic.used and loose.has_unique_names():
             return _with_hint(loose, run.path)
     except FormatError as error:
-        if problem and melodic.used:  # an old file: the strict reading failed for want of prefixes
+        if problem and melodic.used:  # an old file: the strict reading lacked prefixes
             problem = error
     if strict is not None:
         return _with_hint(strict, run.path)
@@ -78,7 +78,7 @@ def _choose(run: Run) -> Attempt:
 
 
 def _legacy(run: Run, problem: FormatError) -> Attempt:
-    """The order of the oldest releases; `problem` is raised where that does not help."""
+    """The order of the oldest releases; raises `problem` if that does not help."""
     legacy = Legacy()
     try:
         found = attempt(run, legacy.replacements())
@@ -92,7 +92,7 @@ def _legacy(run: Run, problem: FormatError) -> Attempt:
 
 
 def _with_hint(chosen: Attempt, path: str) -> Attempt:
-    """The same, with a warning when something was perhaps meant as a macro."""
+    """The same, with a warning if something was perhaps meant as a macro."""
     if tags := dict.fromkeys(chosen.unknown_tags()):
         names = ", ".join(f"<{tag}>" for tag in tags)
         hint = f"{path}: {names} left as it is: no macro and no tag of URDF or SRDF"

@@ -1,4 +1,4 @@
-"""xacro's work on its document, in time that grows with the size and not with its square."""
+"""xacro's changes of its document, in time that grows linearly with its size."""
 
 import itertools
 from xml.dom import minidom
@@ -7,12 +7,12 @@ NEAR = 50  # children
 
 
 class Siblings(minidom.NodeList):
-    """Children of a node, looked for first near the last one: xacro goes along them in order."""
+    """Children of a node, searched first near the last one found: xacro processes them in order."""
 
     __slots__ = ("_near",)
 
     def index(self, node: minidom.Node) -> int:
-        """As a list's."""
+        """As list.index."""
         near = getattr(self, "_near", 0)
         try:
             found = super().index(node, max(0, near - NEAR), near + NEAR)
@@ -22,16 +22,16 @@ class Siblings(minidom.NodeList):
         return found
 
     def remove(self, node: minidom.Node) -> None:
-        """As a list's."""
+        """As list.remove."""
         del self[self.index(node)]
 
 
 def replace_node(
     node: minidom.Node, by: minidom.Node | list[minidom.Node] | None, content_only: bool = False
 ) -> None:
-    """Replaces xacro's: puts `by`, or its content, in the place of a node.
+    """Replaces xacro's: puts `by`, or its content, in place of a node.
 
-    xacro moves the new nodes one by one, and each is looked for among all that are there.
+    xacro moves the new nodes one by one, and searches for each among all that are there.
     """
     parent, new = node.parentNode, []
     for one in by if isinstance(by, list) else [by] if by is not None else []:

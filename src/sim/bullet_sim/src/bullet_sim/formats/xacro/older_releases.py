@@ -1,7 +1,7 @@
 """How older releases read xacro files, for one expansion each.
 
-Melodic: keywords and macro calls without prefix, macros that are all global. Before Melodic also
-another order: includes first, then all macros and properties.
+Melodic: keywords and macro calls without prefix, all macros global. Before Melodic also another
+order: includes first, then all macros and properties.
 """
 
 from collections.abc import Iterator
@@ -20,15 +20,15 @@ class Melodic:
     """Replaces functions of xacro for one expansion."""
 
     def __init__(self) -> None:
-        self.used = False  # whether anything without its prefix was met
+        self.used = False  # whether anything without prefix was found
         self._call, self._grab = xacro.handle_macro_call, xacro.grab_macro
 
     def replacements(self) -> dict[str, Any]:
-        """By the names that xacro looks up."""
+        """The replacements by the names in xacro."""
         return {"parse": self.parse, "handle_macro_call": self.call, "grab_macro": self.grab}
 
     def parse(self, source: object, filename: str) -> minidom.Document:
-        """The file with the prefix put before keywords. TooLarge of a file beyond the limits."""
+        """The file with the prefix added to keywords. TooLarge for a file beyond the limits."""
         document = parse(source, filename)
         for element in document.getElementsByTagName("*"):
             if element.tagName in KEYWORDS and not _is_sdf_include(element):
@@ -38,19 +38,19 @@ class Melodic:
         return document
 
     def call(self, node: minidom.Element, macros: xacro.Table, symbols: xacro.Table) -> bool:
-        """Expands a macro, whose call may lack the prefix."""
+        """Expand a macro, whose call may lack the prefix."""
         if not node.tagName.startswith("xacro:") and _is_macro(node.tagName, macros, symbols):
             self._prefix(node)
         return self._call(node, macros, symbols)
 
     def grab(self, element: minidom.Element, macros: xacro.Table) -> None:
-        """Keeps a macro for the whole document, as Melodic did."""
+        """Keep a macro for the whole document, as Melodic did."""
         everywhere = macros.top()
         self.used |= everywhere is not macros
         self._grab(element, everywhere)
 
     def _strip(self, call: minidom.Element) -> None:
-        """The prefix from the name of a macro that is called by its name."""
+        """Remove the prefix from the name of a macro that is called by its name."""
         name = call.getAttribute("macro")
         self.used |= name.startswith("xacro:")
         call.setAttribute("macro", name.removeprefix("xacro:"))
@@ -61,14 +61,14 @@ class Melodic:
 
 
 class Legacy(Melodic):
-    """Macros and properties count above the line that defines them, and conditions hide none."""
+    """Macros and properties count before their definition, too, even within conditions."""
 
     def replacements(self) -> dict[str, Any]:
-        """By the names that xacro looks up."""
+        """The replacements by the names in xacro."""
         return super().replacements() | {"process_doc": self.process}
 
     def process(self, document: minidom.Document, mappings: dict[str, str] | None = None) -> None:
-        """Stands for xacro's `process_doc`."""
+        """Replaces xacro's `process_doc`."""
         self.used = True
         context = xacro.substitution_args_context
         context["arg"] = mappings or {}
@@ -86,7 +86,7 @@ class Legacy(Melodic):
         xacro.eval_all(root, macros, symbols)
 
     def _include(self, parent: minidom.Element, macros: xacro.Table, symbols: xacro.Table) -> None:
-        """Puts files in the place of their includes; one named by a property waits its turn."""
+        """Replace includes by their files; one named by a property comes later."""
         for element in elements(parent):
             if element.tagName == "xacro:arg" and element.getAttribute("default"):
                 arguments = xacro.substitution_args_context["arg"]
@@ -99,7 +99,7 @@ class Legacy(Melodic):
 
 
 def _is_sdf_include(element: minidom.Element) -> bool:
-    """Gazebo's <include> holds elements (a <uri>); xacro's holds nothing."""
+    """Whether it is Gazebo's <include>, which has elements (a <uri>); xacro's has none."""
     return element.tagName == "include" and bool(elements(element))
 
 

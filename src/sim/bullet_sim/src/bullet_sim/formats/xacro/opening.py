@@ -1,4 +1,4 @@
-"""How xacro's files are opened: plain ones only, so large, so many, and none within itself."""
+"""Opens files for xacro: only regular ones, with limits of size, number and self-inclusion."""
 
 import errno
 import os
@@ -20,9 +20,9 @@ _xacros_load_yaml = xacro.load_yaml
 
 
 def parse(_source: object, filename: str) -> minidom.Document:
-    """Reads bytes, so that the file's own encoding counts and not the terminal's.
+    """Read bytes, so that the file's own encoding counts and not the terminal's.
 
-    TooLarge beyond MOST_FILES, XacroException for what cannot be read.
+    TooLarge beyond MOST_FILES, XacroException for a file that cannot be read.
     """
     if len(xacro.all_includes) > MOST_FILES:
         raise TooLarge(f"{place('xacro')}: more than {MOST_FILES} files are included; include each "
@@ -51,7 +51,7 @@ def load_yaml(filename: str) -> Any:
 
 
 def _check(filename: str) -> None:
-    """OSError for what exists and is not a regular file: reading a pipe would block."""
+    """OSError for anything that exists and is not a regular file: reading a pipe would block."""
     if os.path.exists(filename):
         try:
             check_file(filename, LARGEST_FILE, "split it, or write macros for what comes again")

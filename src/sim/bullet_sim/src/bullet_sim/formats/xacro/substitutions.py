@@ -1,4 +1,4 @@
-"""`$(…)` in xacro files: what ROS 1's xacro supports and PyPI's does not."""
+"""`$(…)` in xacro files: those that ROS 1's xacro supports and PyPI's does not."""
 
 import itertools
 import os
@@ -12,7 +12,7 @@ from xacro import substitution_args
 
 _COUNT = itertools.count()
 ANON = re.compile(r"\$\(anon\s+([^\s)]+)\s*\)")
-# As xacro's own, but $(eval …) may hold calls such as arg('x'), one within another three deep.
+# As xacro's own, but $(eval …) may contain calls such as arg('x'), nested up to three deep.
 LEXER = xacro.QuickLexer(
     DOLLAR_DOLLAR_BRACE=r"^\$\$+(\{|\()",
     EXPR=r"^\$\{[^\}]*\}",
@@ -28,7 +28,7 @@ class NoSuchArgument(substitution_args.ArgException, KeyError):
 
 
 class Arguments(dict):
-    """Values by name; access to a missing one is the same error by item and by attribute."""
+    """Values by name; access to a missing one raises the same error by item and by attribute."""
 
     def __missing__(self, name: str) -> str:
         raise NoSuchArgument(name)
@@ -40,11 +40,11 @@ def directory(_filename: str) -> str:
 
 
 def resolver(resolve: Callable[..., str]) -> Callable[..., str]:
-    """PyPI's `resolve_args`, with `$(anon NAME)` besides: one name for each NAME and expansion."""
+    """PyPI's `resolve_args`, and also `$(anon NAME)`: one name per NAME and expansion."""
     names: dict[str, str] = {}
 
     def anonymous(match: re.Match) -> str:
-        # The form of rosgraph's: name, host, process, and a number for its milliseconds.
+        # The form of rosgraph's: name, host, process, and a number instead of its milliseconds.
         host = re.sub(r"\W", "_", socket.gethostname())
         made = f"{match[1]}_{host}_{os.getpid()}_{next(_COUNT)}"
         return names.setdefault(match[1], made)
