@@ -1,6 +1,7 @@
 """`make soak`: what counts as growth, and one short run."""
 
 import csv
+import math
 import os
 import subprocess
 import sys
@@ -15,18 +16,18 @@ from run_session.failure import RunError
 sys.path.insert(0, str(Path(__file__).parent / "soak"))
 import samples
 from growth import judge
-from samples import ALL, CLOCK, PERIOD, Sample
+from samples import ALL, CLOCK, FEWEST, PERIOD, Sample
 
 PROGRAM = Path(__file__).parent / "soak" / "soak.py"
 HOUR = 3600.0
 
 
 def hours(count, memory=lambda _: 100.0, descriptors=lambda _: 20, pace=lambda _: 1.0,
-          driven=lambda _: 0.5):
+          speed=lambda _: 0.05):
     """Samples of a process and the clock; each figure is a function of the time, s."""
     found = []
     for now in (number * PERIOD for number in range(int(count * HOUR / PERIOD))):
-        found.append(Sample(now, CLOCK, 0.0, 0, 0, pace(now), 100.0, driven(now)))
+        found.append(Sample(now, CLOCK, 0.0, 0, 0, pace(now), 100.0, speed(now)))
         found.append(Sample(now, "gazebo", memory(now), descriptors(now), 12, 0.0, 0.0, 0.0))
     return found
 
@@ -40,14 +41,30 @@ def hours(count, memory=lambda _: 100.0, descriptors=lambda _: 20, pace=lambda _
     ({"descriptors": lambda time: 20 + int(time // 600)}, ["gazebo descriptors"]),
     ({"pace": lambda time: 1.0 - 0.05 * time / HOUR}, ["clock pace"]),
     ({"pace": lambda _: 0.0}, ["clock pace"]),  # it stands still
-    ({"driven": lambda time: 0.5 * (time < HOUR)}, ["clock driven"]),
-    ({"driven": lambda time: 4.0 * (time % 60 < PERIOD)}, []),  # a goal a minute
+    ({"speed": lambda time: 0.05 * (time < HOUR)}, ["clock speed"]),
+    ({"speed": lambda time: 0.4 * (time % 60 < PERIOD)}, []),  # a goal a minute
+    ({"speed": lambda _: 0.003}, ["clock speed"]),  # trembles, or slides
+    ({"speed": lambda _: math.nan}, ["clock speed"]),
 ])
 def test_growth_is_more_than_two_percent_after_the_warm_up(figures, changed):
     table, verdict = judge(hours(1.5, **figures))
     rows = [" ".join(line.split()[:2]) for line in table.splitlines()
             if line.endswith(("CHANGES", "STANDS"))]
     assert rows == changed and verdict is bool(changed)
+
+
+@pytest.mark.parametrize(("seconds", "speed", "stands"), [
+    (25.0, lambda _: 0.18, False),
+    (25.0, lambda _: 0.0, True),
+    (220.0, lambda time: 0.2 * (time % 60 < 2 * PERIOD), False),  # rests at the end
+    (220.0, lambda time: 0.2 * (time < 100), True),
+])
+def test_a_short_run_tells_driving_from_standing(seconds, speed, stands):
+    period = min(PERIOD, seconds / FEWEST)
+    times = [period * number for number in range(1, round(seconds / period) + 1)]
+    found = [Sample(time, CLOCK, 0.0, 0, 0, 1.0, 100.0, speed(time)) for time in times]
+    table, verdict = judge(found)
+    assert ("STANDS" in table) is verdict is stands
 
 
 @pytest.mark.parametrize("count", [0.0, 5 * PERIOD / HOUR])
@@ -79,6 +96,7 @@ def test_a_short_run_is_sampled_and_leaves_its_files(tmp_path):
     with (out / "samples.csv").open(encoding="utf-8") as file:
         names = {row["name"] for row in csv.DictReader(file)}
     assert {CLOCK, ALL, "gazebo", "follower", "sim_viewer", "rosmaster"} <= names
+    assert "STANDS" not in run.stdout
     assert (out / "growth.png").stat().st_size > 10_000
 
 

@@ -61,7 +61,7 @@ class Beside:
             delete(MODEL)
         else:
             spawn_urdf(MODEL, BOX, "", *PLACE)
-        if self._count % GOAL_PERIODS == 0:
+        if self._count % GOAL_PERIODS == 1:  # not at once: move_base may be starting
             goal = PoseStamped()
             goal.header.frame_id, goal.pose.orientation.w = "map", 1.0
             place = GOALS[self._count // GOAL_PERIODS % len(GOALS)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from samples import CLOCK, Sample
@@ -17,8 +17,9 @@ SHARE = 5  # the first and the last fifth after the warm-up are compared
 MOST_GROWTH = 0.02
 LEAST = {"memory": 2.0, "descriptors": 2.0, "threads": 2.0}  # MiB, count: less is no growth
 MOST_DRIFT = 0.02  # relative, of pace and rate
-LEAST_DRIVEN = 1.0  # m, in the last part; a robot that stands causes no load
-CLOCK_FIGURES = {"pace": statistics.median, "rate": statistics.median, "driven": sum}
+SLOWEST = 0.005  # m/s, mean of the last part; a robot that stands causes no load
+LONGEST_REST = 90.0  # s, wall, for which a robot may stand between two goals
+CLOCK_FIGURES = {"pace": statistics.median, "rate": statistics.median, "speed": statistics.fmean}
 
 
 def judge(samples: Sequence[Sample]) -> tuple[str, bool]:
@@ -26,13 +27,12 @@ def judge(samples: Sequence[Sample]) -> tuple[str, bool]:
 
     RunError if there are too few samples.
     """
-    if _ends([(each.time, each.pace) for each in samples if each.name == CLOCK]) is None:
+    if _ends([each for each in samples if each.name == CLOCK], "pace") is None:
         raise RunError("too few samples to say whether anything grows: let it run on")
     rows, changes = [("process", "", "first", "last", "change", "")], False
     for name, found in grouped(samples, lambda each: each.name).items():
         for kind in CLOCK_FIGURES if name == CLOCK else LEAST:
-            parts = _ends([(each.time, getattr(each, kind)) for each in found],
-                          CLOCK_FIGURES.get(kind, statistics.median))
+            parts = _ends(found, kind)
             if parts is None:
                 continue
             first, last = parts
@@ -45,21 +45,25 @@ def judge(samples: Sequence[Sample]) -> tuple[str, bool]:
 
 def _verdict(kind: str, first: float, last: float, change: float) -> str:
     """The fault in a figure; "" if there is none."""
-    if kind == "driven":
-        return "STANDS" if last < LEAST_DRIVEN else ""
+    if kind == "speed":
+        return "" if last >= SLOWEST else "STANDS"
     if kind in CLOCK_FIGURES:
         return "CHANGES" if abs(change) > MOST_DRIFT or not last else ""
     return "CHANGES" if change > MOST_GROWTH and last - first >= LEAST[kind] else ""
 
 
-def _ends(seen: Sequence[tuple[float, float]],
-          figure: Callable[[Sequence[float]], float] = statistics.median,
-          ) -> tuple[float, float] | None:
+def _ends(found: Sequence[Sample], kind: str) -> tuple[float, float] | None:
     """A figure of the first and the last part after the warm-up; None of too few samples."""
-    begin = min(WARM_UP, seen[-1][0] / 3) if seen else 0.0
-    values = [value for when, value in seen if when >= begin]
-    part = len(values) // SHARE
-    return (figure(values[:part]), figure(values[-part:])) if part else None
+    end = found[-1].time if found else 0.0
+    seen = [each for each in found if each.time >= min(WARM_UP, end / 3)]
+    part = len(seen) // SHARE
+    if not part:
+        return None
+    if kind == "speed":  # a part in which only a rest falls says nothing
+        part = max(part, sum(each.time > end - LONGEST_REST for each in seen))
+    values = [getattr(each, kind) for each in seen]
+    figure = CLOCK_FIGURES.get(kind, statistics.median)
+    return figure(values[:part]), figure(values[-part:])
 
 
 def draw(samples: Sequence[Sample], path: Path) -> None:

@@ -33,7 +33,7 @@ class Sample(NamedTuple):
     threads: int
     pace: float  # simulated seconds per second since the last sample; 0 for a process
     rate: float  # messages of /clock per simulated second
-    driven: float  # m, in a straight line, since the last sample
+    speed: float  # m/s, wall, of the robot in a straight line since the last sample
 
 
 class Sampler:
@@ -52,7 +52,7 @@ class Sampler:
         elapsed, passed = now - self._looked, simulated - self._simulated
         place = _place(self._robot)
         clock = Sample(now - self._began, CLOCK, 0.0, 0, 0, passed / elapsed,
-                       self._clocks / max(passed, 1e-9), math.dist(place, self._place))
+                       self._clocks / max(passed, 1e-9), math.dist(place, self._place) / elapsed)
         self._looked, self._simulated, self._clocks = now, simulated, 0
         self._place = place
         found: dict[str, Sample] = {}

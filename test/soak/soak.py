@@ -5,7 +5,7 @@
 
 Meanwhile: the page with five visitors, a model that is spawned and deleted, a rolling bag.
 Writes out/soak/NAME: samples.csv, growth.png and log/. Exit code 0: all is flat after the warm-up;
-1: something grows, or the robot stands; 2: could not run.
+1: something grows, time changes pace, or the robot stands; 2: could not run.
 """
 
 from __future__ import annotations

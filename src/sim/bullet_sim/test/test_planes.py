@@ -114,6 +114,15 @@ def test_planes_that_differ_both_collide(world, other):
     assert number(world, "course") in touched(world)
 
 
+@pytest.mark.parametrize("first", [{"collides": False}, {"collide_bitmask": 1}])
+def test_beside_a_plane_that_some_fall_through_another_collides(world, first):
+    world.spawn(plane("first", **first))
+    world.spawn(plane("ground"))
+    world.spawn(box(), Pose((0.3, 0.2, 0.05)))
+    assert settle(world) == pytest.approx(0.05, abs=1e-4)
+    assert number(world, "ground") in touched(world)
+
+
 def test_a_plane_moved_into_another_stops_colliding(world):
     world.spawn(plane("ground"))
     world.spawn(plane("course"), Pose((0.0, 0.0, -0.5)))

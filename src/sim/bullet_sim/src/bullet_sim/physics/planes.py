@@ -6,7 +6,7 @@ solver splits the load between them, which doubles its work and halves its accur
 
 from collections.abc import Callable
 
-from bullet_sim.description import Collision, Plane
+from bullet_sim.description import Collision, Plane, Surface
 from bullet_sim.physics.assembly import Tree
 from bullet_sim.pose import Pose, rotate
 
@@ -45,10 +45,13 @@ class Planes:
 
 
 def _only_plane(tree: Tree) -> Collision | None:
+    """The plane that is all there is, if it collides with everything."""
     if not tree.fixed or len(tree.links) != 1 or len(tree.links[0].collisions) != 1:
         return None
     collision = tree.links[0].collisions[0]
-    return collision if isinstance(collision.geometry, Plane) else None
+    meets_all = (collision.surface.collides
+                 and collision.surface.collide_bitmask == Surface.collide_bitmask)
+    return collision if isinstance(collision.geometry, Plane) and meets_all else None
 
 
 def _place(collision: Collision, frame: Pose) -> Place:
