@@ -1,6 +1,5 @@
 """Messages over a real socket pair: at once where it takes them, in order, never waiting."""
 
-import gc
 import socket
 import threading
 import time
@@ -74,14 +73,6 @@ def test_a_message_in_pieces_is_one(pair):
     pair.connection.write_data([memoryview(piece) for piece in pieces])
     pair.connection.write_data(b"next")
     assert pair.read(20_000_012) == b"".join(pieces) + b"next"
-
-
-@pytest.fixture
-def no_collector():
-    gc.collect()
-    gc.disable()
-    yield
-    gc.enable()
 
 
 def test_a_message_that_could_not_be_sent_is_not_kept(pair, no_collector):

@@ -1,6 +1,5 @@
 """A camera takes all with it that it was drawn in, and at once: before delete_model answers."""
 
-import gc
 import threading
 import time
 import weakref
@@ -28,14 +27,6 @@ def cameras(monkeypatch):
 
     monkeypatch.setattr(Camera, "__init__", noted)
     return made
-
-
-@pytest.fixture
-def no_collector():
-    gc.collect()
-    gc.disable()
-    yield
-    gc.enable()
 
 
 def see(bench, topic):

@@ -1,5 +1,6 @@
 """One interactive marker: its pose, and its controls with their shapes."""
 
+import functools
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -76,7 +77,7 @@ class InteractiveMarker:
         return sum(max(1, min(len(one.markers), MOST_MARKERS))
                    for one in self._given)
 
-    @property
+    @functools.cached_property
     def control_names(self) -> list[str]:
         """Unique names of its controls for feedback, also before they are built."""
         return [TITLE, *unique([one.name[:LONGEST_TEXT] for one in self._given])]
