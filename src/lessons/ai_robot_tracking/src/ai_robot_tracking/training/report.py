@@ -1,4 +1,4 @@
-"""The training report: how the shipped model came to be, what it can do, what it cannot."""
+"""The training report: how the shipped model was trained, and its scores."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ CURVE_POINTS = 12
 
 
 def write_report(path: Path, count: int) -> float:
-    """Write MODEL-training.md and MODEL.png beside the model; mAP at an overlap of 0.5."""
+    """Write MODEL-training.md and MODEL.png next to the model; returns the mAP at an IoU of 0.5."""
     log = path.with_name(f"{path.stem}-training.json")
     try:
         model, done = Model(path), json.loads(log.read_text(encoding="utf-8"))
@@ -146,7 +146,7 @@ def _text(value: float) -> str:
 
 
 def _sheet(model: Model, pictures: list[Picture]) -> np.ndarray:
-    """The first pictures as the node annotates them, side by side, BGR."""
+    """The first images as the node annotates them, side by side, BGR."""
     tiles = []
     for picture in pictures:
         if picture.rgb.shape[0] * 4 != picture.rgb.shape[1] * 3 or not len(picture.labels):
