@@ -78,10 +78,10 @@ def read_sets(folder: Path, name: str, most: int | None = None) -> PictureSet:
                 labels.append(rows)
                 first = int(file["first"]) if first is None else first
         except DAMAGED as error:
-            raise OSError(f"{path}: no set of pictures; draw it again: {error}") from error
+            raise OSError(f"{path}: not a set of images; draw it again: {error}") from error
         count += len(images[-1])
     if first is None:
-        raise FileNotFoundError(f"{folder}: no pictures {name}-*.npz; draw them first")
+        raise FileNotFoundError(f"{folder}: no images {name}-*.npz; draw them first")
     together = PictureSet(np.concatenate(images), np.concatenate(labels), first)
     if most is None or most >= count:
         return together

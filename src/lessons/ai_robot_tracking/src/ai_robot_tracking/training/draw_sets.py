@@ -38,7 +38,7 @@ def draw_set(folder: Path, name: str, first: int, count: int, jobs: int = 1) -> 
     with multiprocessing.get_context("spawn").Pool(jobs) as pool:
         for drawn in pool.imap_unordered(_draw_shard, wanted):
             done += drawn
-            print(f"{name}: {done} of {count} pictures, {time.monotonic() - began:.0f} s",
+            print(f"{name}: {done} of {count} images, {time.monotonic() - began:.0f} s",
                   flush=True)
 
 

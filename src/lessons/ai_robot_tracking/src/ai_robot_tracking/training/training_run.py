@@ -46,7 +46,7 @@ def read_drawn(folder: Path, pictures: int) -> PictureSet:
     except FileNotFoundError as error:
         raise TrainingError(str(error)) from error
     if len(drawn) < pictures:
-        raise TrainingError(f"{folder}: {len(drawn)} pictures, not {pictures}; draw them first")
+        raise TrainingError(f"{folder}: {len(drawn)} images, not {pictures}; draw them first")
     return drawn
 
 
