@@ -1,4 +1,4 @@
-# What every script here starts with: the root, one-line messages, and an environment without the caller's Python and ROS.
+# Sourced first by every script here: the root, one-line messages, and an environment without the caller's Python and ROS.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 self=$(basename "$0" .sh)
@@ -6,29 +6,29 @@ self=$(basename "$0" .sh)
 say() { printf '%s\n' "$*"; }
 fail() { printf '%s: %s\n' "$self" "$1" >&2; exit "${failure_code:-1}"; }
 
-# `sudo make course` would leave root's files in a person's folder: go on as that person.
+# `sudo make course` would leave root's files in a user's folder: continue as that user.
 if [ "$(id -u)" = 0 ] && [ -z "${stays_root:-}" ] && [ -n "${SUDO_USER:-}" ] && [ "$(stat -c %U "$root")" = "$SUDO_USER" ]; then
   exec sudo -u "$SUDO_USER" -H -- "$root/scripts/$(basename "$0")" "$@"
 fi
 
-# The master that the caller named, for those scripts that ask for it.
+# The ROS master that the caller set, for scripts that use it.
 given_master=("${ROS_MASTER_URI:-}" "${ROS_HOSTNAME:-}" "${ROS_IP:-}")
 
-# Another python3, an active venv or conda, a sourced ROS workspace: none of it may leak in.
+# Another python3, an active venv or conda, or a sourced ROS workspace must not leak in.
 unset "${!PYTHON@}" "${!CONDA_@}" "${!ROS_@}" VIRTUAL_ENV CMAKE_PREFIX_PATH LD_LIBRARY_PATH \
   PKG_CONFIG_PATH MAKEFLAGS MFLAGS MAKELEVEL CC CXX CFLAGS CXXFLAGS BASH_ENV ENV CDPATH
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 
-# Gives this shell what a learner's terminal has after `source devel/setup.bash`.
+# Sources the workspace, as a learner's terminal does with `source devel/setup.bash`.
 enter_workspace() {
   set +u; . "$root/devel/setup.bash"; set -u
   export ROS_HOSTNAME=localhost  # works where the machine's own name does not resolve
-  # roscore and roslaunch write below ~/.ros, and end where they cannot.
+  # roscore and roslaunch write to ~/.ros, and end if they cannot.
   local home=${HOME:-/nonexistent}
   if [ ! -w "$home/.ros" ] && { [ -e "$home/.ros" ] || [ ! -w "$home" ]; }; then export ROS_HOME=$root/.setup/ros; fi
 }
 
-# Sets up what a trial needs whose arguments these are.
+# Sets up what a trial with these arguments needs.
 set_up_trial() {
   local options=() word
   for word in "$@"; do
@@ -37,19 +37,19 @@ set_up_trial() {
   "$root/scripts/setup.sh" "${options[@]}" || exit 2
 }
 
-# A master that other terminals join: the one that was named, the usual one, or, where somebody else has that, a new one.
+# Chooses a master that other terminals can join: the caller's, else the default one, or a new one if its port is in use.
 choose_master() {
   local usual=http://localhost:11311 port
   if [ -n "${given_master[0]}" ] && [ "${given_master[0]%/}" != "$usual" ]; then
     export ROS_MASTER_URI=${given_master[0]}
     if [ -n "${given_master[2]}" ]; then unset ROS_HOSTNAME; export ROS_IP=${given_master[2]}; fi
     if [ -n "${given_master[1]}" ]; then export ROS_HOSTNAME=${given_master[1]}
-    # Another machine cannot reach this one as localhost: rospy takes this machine's own name.
+    # Another machine cannot reach this one as localhost: let rospy use this machine's own name.
     elif [[ ! $ROS_MASTER_URI =~ ^http://(localhost|127\.) ]]; then unset ROS_HOSTNAME; fi
     return 0
   fi
   port=$(python3 -c 'from run_session.launch import free_port; print(free_port())')
   export ROS_MASTER_URI=http://localhost:$port
   [ "$ROS_MASTER_URI" = "$usual" ] ||
-    say "Another ROS master runs on this machine. In each further terminal type: export ROS_MASTER_URI=$ROS_MASTER_URI"
+    say "Another ROS master is running on this machine. In each further terminal type: export ROS_MASTER_URI=$ROS_MASTER_URI"
 }

@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# Makes one Debian package of the whole: out/ros-courses_VERSION_ARCHITECTURE.deb. docs/installed.md says what is in it.
+# Builds one Debian package of everything: out/ros-courses_VERSION_ARCHITECTURE.deb. docs/installed.md lists its contents.
 #
-# Always from the beginning, in .setup/deb: what an older build left there would travel along.
+# Always a clean build, in .setup/deb: files left by an older build would be packed too.
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" --dependencies
 
 prefix=/opt/ros/courses build=$root/.setup/deb logs=$root/.setup python=$root/.venv/bin/python3
 step() {  # name of the log, what to say, command
   local log=$logs/deb-$1.log
-  say "$2 (${SECONDS} s since the start)"
+  say "$2 (after ${SECONDS} s)"
   shift 2
-  "$@" >"$log" 2>&1 </dev/null || fail "$(grep -m1 -E '^CMake Error|[Ee]rror:' "$log" || tail -n 1 "$log") (all of it in ${log#"$root"/})"
+  "$@" >"$log" 2>&1 </dev/null || fail "$(grep -m1 -E '^CMake Error|[Ee]rror:' "$log" || tail -n 1 "$log") (full log: ${log#"$root"/})"
 }
 
 rm -rf "$build"

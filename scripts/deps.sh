@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that the packages of a workspace ask for, and says what nobody has.
+# Installs the Debian packages that a workspace's packages depend on, and reports what is not available.
 #
-#   scripts/deps.sh [--simulate] [WORKSPACE]     WORKSPACE: such as ~/catkin_ws; this one unless given
+#   scripts/deps.sh [--simulate] [WORKSPACE]     WORKSPACE: such as ~/catkin_ws; default: this one
 #
-# Exit code 0: all that can be had is installed; 1: apt could not; 2: there is no such workspace.
+# Exit code 0: all that is available is installed; 1: apt failed; 2: there is no such workspace.
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 python3 -c 'import catkin_pkg, rospkg, yaml' 2>/dev/null || fail "Debian's ROS is not installed yet: make setup"
 arguments=() workspace=$root
@@ -14,6 +14,6 @@ for word in "$@"; do
     *) workspace=$word ;;
   esac
 done
-# Not by `rosrun`: what is missing may be what keeps this workspace from being built.
+# Not with `rosrun`: a missing package may be why this workspace could not be built.
 export PYTHONPATH=$root/src/workspace_needs/src ROS_PACKAGE_PATH=$root/src:/usr/share
 exec python3 -m workspace_needs.command "${arguments[@]}" "$workspace"

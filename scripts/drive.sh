@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The racecar and its keyboard: a window where there is a screen, else this terminal.
+# The racecar, driven by keyboard: in a window if there is a screen, else in this terminal.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" || exit 2
@@ -10,7 +10,7 @@ if [ -n "${DISPLAY:-}" ]; then
   exec roslaunch racecar_description car_control.launch "$@"
 fi
 if ! [ -t 0 ]; then
-  echo "drive: there is no screen (DISPLAY) and no terminal to take keys from; type it in a terminal" >&2
+  echo "drive: there is no screen (DISPLAY) and no terminal to read keys from; run it in a terminal" >&2
   exit 2
 fi
 mkdir -p "$root/out"
@@ -19,11 +19,11 @@ roslaunch racecar_description car_control.launch gui:=false keyboard:=false "$@"
 launched=$!
 trap 'kill -INT "$launched" 2> /dev/null || true; wait "$launched" || true' EXIT
 trap 'exit 130' INT TERM HUP
-echo "The car starts; what the nodes say is in out/drive.log."
+echo "The car is starting; the nodes' output is in out/drive.log."
 until rosservice list > /dev/null 2>&1; do
   if ! kill -0 "$launched" 2> /dev/null; then
     tail -n 5 "$root/out/drive.log" >&2
-    echo "drive: the car did not start; all of it is in out/drive.log" >&2
+    echo "drive: the car did not start; the full output is in out/drive.log" >&2
     exit 2
   fi
   sleep 0.2

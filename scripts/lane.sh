@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Keeps the lane with its zebra crossings by camera, and writes out/lane/ as scripts/course.sh does.
+# Drives the lane course with its zebra crossings by camera, and writes out/lane/ as scripts/course.sh does.
 #
 #   scripts/lane.sh [--method NAME] [--empty] [--laps N] [--duration S] [--out DIR] [--fast]
 #                   [--seed N]
 #
-# --empty: nobody crosses; writes out/lane_empty/. NAME: a file of lane_keeping's methods/.
-# Exit code 0: the laps were closed; 1: the car left the lane or stalled; 2: it could not run.
+# --empty: nobody crosses; writes out/lane_empty/. NAME: a module in lane_keeping's methods/.
+# Exit code 0: all laps were completed; 1: the car left the lane or stalled; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 course=lane methods=$root/src/lessons/lane_keeping/src/lane_keeping/methods

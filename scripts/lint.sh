@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Checks the style of all Python code, by the rules in pyproject.toml.
+# Checks the style of all Python code against the rules in pyproject.toml.
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" --tests --dependencies
 cd "$root"

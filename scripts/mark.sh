@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Marks a folder of submissions, each of which drives in a sandbox: out/mark/marks.csv, marks.html.
+# Marks a folder of submissions, each run in a sandbox: out/mark/marks.csv, marks.html.
 #
 #   scripts/mark.sh --submissions DIR [--course course|race|lane] [--seeds N] [--rules YAML] [--no-sandbox]
 #                   [--film] [--out DIR] [--resume] [--workers N | --scheduler ADDRESS]
 #
-# With sudo it stays root, who may always make a sandbox; without a sandbox it does not.
-# Exit code 0: every case could be run; 1: some could not; 2: nothing could.
+# With sudo it stays root, who may always create a sandbox; with --no-sandbox it does not.
+# Exit code 0: every case could be run; 1: some could not; 2: none could.
 failure_code=2 stays_root=yes
 case " $* " in *" --no"*) stays_root= ;; esac
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -13,7 +13,7 @@ set_up_trial "$@"
 enter_workspace
 owner=$(stat -c %u "$root")
 [ "$(id -u)" != "$owner" ] || exec python3 "$root/src/marking/scripts/mark.py" "$@"
-code=0  # root leaves nothing of its own in a person's out/
+code=0  # leave no files owned by root in a user's out/
 PYTHONDONTWRITEBYTECODE=1 python3 "$root/src/marking/scripts/mark.py" "$@" || code=$?
 [ ! -d "$root/out" ] || chown -h --reference="$root" "$root/out"
 [ ! -d "$root/out/mark" ] || chown -Rh --reference="$root" "$root/out/mark"

@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# Makes a bare Debian (12 or 13) able to build, run and test this workspace; run again, it does only what is missing.
+# Sets up a bare Debian (12 or 13) to build, run and test this workspace; run again, it does only what is missing.
 #
-#   scripts/setup.sh                 everything that running needs
-#   scripts/setup.sh --tests         and what only the tests need
-#   scripts/setup.sh --workers       and what WORKERS= and SCHEDULER= of the trials need (Dask); the tests need it too
-#   scripts/setup.sh --learning      and what only the learning environments need (Gymnasium); the tests need it too
-#   scripts/setup.sh --cpp           and the lessons' programs in C++, from now on; the tests need them too
-#   scripts/setup.sh --build         build even where no input of the build has changed
-#   scripts/setup.sh --dependencies  all but the build
+#   scripts/setup.sh                 everything needed to run
+#   scripts/setup.sh --tests         also what only the tests need
+#   scripts/setup.sh --workers       also what the trials' WORKERS= and SCHEDULER= need (Dask); included in --tests
+#   scripts/setup.sh --learning      also what only the learning environments need (Gymnasium); included in --tests
+#   scripts/setup.sh --cpp           also build the lessons' C++ programs, from now on; included in --tests
+#   scripts/setup.sh --build         build even if nothing has changed
+#   scripts/setup.sh --dependencies  everything but the build
 #
-# dependencies/ says what is installed, for each release and architecture. Stamps and logs lie in .setup/. A stamp is
-# written last, so whatever was interrupted is done again.
+# dependencies/ lists what is installed, for each release and architecture. Stamps and logs are in .setup/. A stamp is
+# written last, so an interrupted step is done again.
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 debian_mb=2000  # measured: 1550 installed, 405 in apt's cache
@@ -36,7 +36,7 @@ for part in logged machine debian python source_packages workspace; do . "$root/
 
 check_machine
 mkdir -p "$state"
-exec 9<"$root"  # two setups at once would trip over each other
+exec 9<"$root"  # two setups at once would interfere with each other
 flock -n 9 || { say "Another setup is running in this folder: waiting for it."; flock 9; }
 mapfile -t missing < <(missing_packages)
 if [ ${#missing[@]} -gt 0 ] || ! venv_is_sound; then

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Lets a course run for hours with people beside it: sets up what is missing, then writes to out/soak/.
+# Runs a course for hours with user activity: sets up what is missing, then writes to out/soak/.
 #
 #   scripts/soak.sh [--hours H] [--course course|race|navigation]
 #
-# Exit code 0: all is flat; 1: something grows; 2: could not run.
+# Exit code 0: nothing grows; 1: something grows, or the robot stands; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" --tests || exit 2

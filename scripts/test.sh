@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Sets up what is missing, then runs every check and test. The last line says how many passed and failed.
 #
-#   scripts/test.sh [--jobs N]     N files that start processes at a time (3)
-#   scripts/test.sh --fast         those of what has changed since main, without processes
+#   scripts/test.sh [--jobs N]     at most N test files with processes at a time (3)
+#   scripts/test.sh --fast         those of changed packages and the core, without processes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" --tests
 enter_workspace

@@ -4,7 +4,7 @@
 #   scripts/track.sh [--scene static|moving|light|occlusion|distractors] [--seed N]
 #                    [--tracker visual_tracker_pid.py|visual_tracker.py] [--keep S] [--fast] [--out DIR]
 #
-# Exit code 0: reached, and its distance kept; 1: not so; 2: it could not run.
+# Exit code 0: the target was reached and its distance kept; 1: not so; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" || exit 2

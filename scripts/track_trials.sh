@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Many seeded drives after the red cylinder: out/track_trials/.
+# Follows the red cylinder in many seeded runs: out/track_trials/.
 #
 #   scripts/track_trials.sh [--seeds N] [--first-seed N] [--sets SET ...] [--out DIR]
 #                           [--resume] [--workers N | --scheduler ADDRESS]
 #
-# Exit code 0: enough of each set good; 1: not so; 2: it could not run.
+# Exit code 0: enough runs of each set succeeded; 1: not so; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 set_up_trial "$@"

@@ -163,7 +163,7 @@ def test_make_refuses_what_the_verb_does_not_take(words: str, unknown: str) -> N
                           capture_output=True, check=False)
     assert done.returncode == (2 if unknown else 0), done.stderr
     assert len(done.stderr.splitlines()) == bool(unknown)
-    assert not unknown or f"takes no {unknown}; " in done.stderr
+    assert not unknown or f"has no option {unknown}; " in done.stderr
 
 
 def test_clean_forgets_what_was_made(tmp_path: Path) -> None:

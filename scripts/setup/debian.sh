@@ -18,7 +18,7 @@ debian_packages() {
   logged apt-update apt update || fail_with_log "apt-get update failed" apt-update
   logged apt-install install_packages || diagnose_apt
 }
-# What was unpacked but not configured, an earlier setup being killed, can be mended; the rest is the person's to mend.
+# Packages left unconfigured by a killed setup can be repaired here; anything else is up to the user.
 diagnose_apt() {
   ! network_failed apt-install || fail "no network: apt cannot fetch the packages (.setup/apt-install.log says more); connect and run this again"
   if grep -q 'Unable to locate package' "$state/apt-install.log"; then

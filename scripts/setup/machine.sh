@@ -1,33 +1,33 @@
-# Step 1: what setup finds and cannot change.
+# Step 1: checks what setup cannot change.
 
 served="Debian 12 and 13"
 builds_only_for="amd64 and arm64 (64-bit Intel, AMD or ARM)"
 
-# Sets platform, such as bookworm-amd64, and lists, the folder of its lists of packages.
+# Sets `platform`, such as bookworm-amd64, and `lists`, the folder with its package lists.
 check_machine() {
   local id='' codename='' name='' architecture
   [ -r /etc/os-release ] && eval "$(. /etc/os-release; printf 'id=%q codename=%q name=%q' "${ID:-}" "${VERSION_CODENAME:-}" "${PRETTY_NAME:-}")"
   compgen -G "$root/dependencies/${codename:-none}-*" >/dev/null && [ "$id" = debian ] ||
-    fail "this is ${name:-no Debian}, and the ROS packages used here are those of $served: use one of these, or docker/ in this repository"
+    fail "this is ${name:-no Debian}, but this needs the ROS packages of $served: use one of these, or docker/ in this repository"
   architecture=$(dpkg --print-architecture)
   platform=$codename-$architecture lists=$root/dependencies/$codename-$architecture
   [ -d "$lists" ] ||
-    fail "this is a machine of architecture $architecture, and Numba, ONNX Runtime and OpenCV are built for $builds_only_for only"
+    fail "this machine's architecture is $architecture, but Numba, ONNX Runtime and OpenCV are built for $builds_only_for only"
   case "$root" in
     *[[:space:]:\;\"\'\$\&\#\(\)\\]*)
-      fail "the folder's name \"$root\" has a blank or one of : ; \" ' \$ & # ( ) \\, which catkin cannot take: move the folder" ;;
+      fail "the folder's name \"$root\" has a space or one of : ; \" ' \$ & # ( ) \\, which catkin cannot handle: move the folder" ;;
   esac
-  [ -w "$root" ] || fail "$(id -un) may not write in $root: run as its owner, $(stat -c %U "$root")"
+  [ -w "$root" ] || fail "$(id -un) may not write to $root: run this as its owner, $(stat -c %U "$root")"
 }
 
 free_mb() { df -Pm "$1" 2>/dev/null | awk 'NR==2 {print $4}'; }
-check_disk() {  # MB that Debian's packages need below /usr, MB that this folder needs
+check_disk() {  # MB needed in /usr for Debian's packages, MB needed in this folder
   local system=$1 here=$2 free
   if [ "$(stat -c %d /usr)" = "$(stat -c %d "$root")" ]; then here=$((here + system)) system=0; fi
   free=$(free_mb /usr)
-  [ "${free:-$system}" -ge "$system" ] || fail "too little disk: /usr has $free MB free, $system MB are needed"
+  [ "${free:-$system}" -ge "$system" ] || fail "not enough disk space: /usr has $free MB free, $system MB are needed"
   free=$(free_mb "$root")
-  [ "${free:-$here}" -ge "$here" ] || fail "too little disk: $root has $free MB free, $here MB are needed"
+  [ "${free:-$here}" -ge "$here" ] || fail "not enough disk space: $root has $free MB free, $here MB are needed"
 }
 
 check_rights() {

@@ -1,10 +1,10 @@
-# Of step 4: packages that have no wheel for this platform are built from their source, once for all clones of a user.
+# Part of step 4: builds packages without a wheel for this platform from source, once for all clones of a user.
 
 build_minutes="about 5 minutes on two idle cores"
-build_needs_mb=900  # measured: 430 the source, 250 what is compiled, 150 the wheel
-# The same on each release: Debian 13's setuptools takes these alone, Debian 12's adds them to Python's own.
+build_needs_mb=900  # measured: source 430, build 250, wheel 150
+# The same on each release: Debian 13's setuptools uses these alone, Debian 12's adds them to Python's own.
 build_flags="-O2 -g0 -DNDEBUG -fno-strict-overflow"
-c_flags="$build_flags -Wno-error=incompatible-pointer-types"  # an error since GCC 14, and PyBullet 3.2.7 has such code
+c_flags="$build_flags -Wno-error=incompatible-pointer-types"  # an error since GCC 14, which PyBullet 3.2.7's code causes
 
 source_packages() {
   local list=$lists/requirements-source.txt names cache wheels
@@ -15,34 +15,34 @@ source_packages() {
   if whole "$wheels"; then
     step 4 "installing $names as built before ($wheels)"
   else
-    step 4 "building $names from source, for which there is no wheel ($build_minutes)"
+    step 4 "building $names from source, because there is no wheel ($build_minutes)"
     build_wheels "$list" "$names"
     keep_wheels "$wheels" || wheels=$state/wheels
   fi
   logged pip pip install --no-user --no-index --force-reinstall "$wheels"/*.whl || pip_failed install
   rm -rf "$state/wheels"
 }
-# The user's; a relative XDG_CACHE_HOME counts as none. Who has no home keeps the wheels in this clone.
+# The user's cache; a relative XDG_CACHE_HOME is ignored. Without a home the wheels stay in this clone.
 cache_folder() {
   case "${XDG_CACHE_HOME:-}" in /*) echo "$XDG_CACHE_HOME"; return ;; esac
   case "${HOME:-}" in /*) echo "$HOME/.cache" ;; *) echo "$state/cache" ;; esac
 }
-# What a wheel depends on: the source, how it is compiled, the release, and the NumPy whose headers it is compiled with.
+# A hash of what a wheel depends on: the source, compiler flags, release, and the NumPy whose headers it is compiled with.
 wheels_key() {
   { echo "$platform $c_flags"; cat "$1"; grep -A 1 '^numpy==' "$lists/requirements.txt"; } | sha256sum | cut -c 1-16
 }
-# All that was built and nothing else, by this user, and nobody else may change it.
+# Whether a folder has all that was built and nothing else, is this user's, and is writable by nobody else.
 whole() {
   [ -z "$(find "${1%/*}" -maxdepth 0 \( ! -user "$(id -u)" -o -perm /022 \) 2>&1)" ] &&
     [ -z "$(find "$1" \( ! -user "$(id -u)" -o -perm /022 -o -type l \) 2>&1)" ] &&
     (cd "$1" && cmp -s <(printf '%s\n' *.whl) <(cut -c 67- SHA256SUMS) && sha256sum --status -c SHA256SUMS) 2>/dev/null
 }
-# Without pip's cache, where a wheel may lie that was built with other flags.
+# Without pip's cache, which may hold a wheel built with other flags.
 build_wheels() {
   local made=$state/wheel-build free
   free=$(free_mb "$root")
   [ "${free:-$build_needs_mb}" -ge "$build_needs_mb" ] ||
-    fail "too little disk: $root has $free MB free, building $2 needs $build_needs_mb MB"
+    fail "not enough disk space: $root has $free MB free, building $2 needs $build_needs_mb MB"
   rm -rf "$made" "$state/wheels"
   mkdir -p "$made"
   doing="building $2 ($build_minutes)" TMPDIR=$made CFLAGS=$c_flags CXXFLAGS=$build_flags logged pip \
@@ -50,7 +50,7 @@ build_wheels() {
   (cd "$state/wheels" && sha256sum -- *.whl >SHA256SUMS)
   rm -rf "$made"
 }
-# The folder appears whole or not at all, though two clones may build at once; what another clone has kept meanwhile stays.
+# The folder appears complete or not at all, even if two clones build at once; one kept by another clone meanwhile stays.
 keep_wheels() {
   local part=$1.$$ above=${1%/*}
   if mkdir -p "$above" 2>/dev/null && chmod go-w "${above%/*}" "$above" 2>/dev/null &&

@@ -1,5 +1,5 @@
 # Step 5: the build.
-# What catkin reads; a change in a .py needs no build, a new package or a changed .msg does. build/: pip's, of `pip install ./src/...`.
+# Hashes of what catkin reads: a new package or a changed .msg needs a build, a changed .py does not. build/ is made by `pip install ./src/...`.
 build_inputs() {
   echo "$root"
   (cd "$root" && find src \( -name __pycache__ -o -name build \) -prune -o -type f \( -name package.xml -o -name CMakeLists.txt -o -name setup.py \
@@ -10,22 +10,22 @@ build_inputs() {
 build_workspace() {
   local told
   told=$(python3 "$root/scripts/own_packages.py" "$root/src") || exit 1
-  if grep -qs '^CPP_LESSONS:BOOL=ON' "$root/build/CMakeCache.txt"; then cpp=ON  # once built, kept up to date
+  if grep -qs '^CPP_LESSONS:BOOL=ON' "$root/build/CMakeCache.txt"; then cpp=ON  # built once, so keep them up to date
   elif [ "$cpp" = ON ]; then force_build=yes; fi
-  rm -f "$state/build-inputs.now"  # root's, where make was once typed with sudo
+  rm -f "$state/build-inputs.now"  # owned by root if make was once run with sudo
   build_inputs >"$state/build-inputs.now"
   if [ "$force_build" = no ] && [ -f "$root/devel/setup.bash" ] && [ ! -e "$state/build-unfinished" ] &&
     cmp -s "$state/build-inputs.now" "$state/build-inputs"; then return 0; fi
   step 5 "building the workspace"
   [ -z "$told" ] || say "$told"
-  # Left-overs of an interrupted build, of another folder or of a package that is gone would be taken for good.
-  # CMake sets the modes of its files, which only their owner may: in a container that is the image's maker.
+  # Left-overs of an interrupted build, another folder or a removed package would be used as if valid.
+  # CMake sets its files' modes, which only their owner may do: in a container that is who built the image.
   if [ -e "$state/build-unfinished" ] || [ ! -O "$root/build" ] || ! same_packages; then rm -rf "$root/build" "$root/devel"; fi
   touch "$state/build-unfinished"
-  mkdir -p "$root/devel/lib/python3/dist-packages"  # else catkin leaves it out of the PYTHONPATH it remembers
-  # The venv's python, since catkin writes it into the wrappers of installed scripts; Debian 13's reads the second name.
+  mkdir -p "$root/devel/lib/python3/dist-packages"  # else catkin omits it from the PYTHONPATH it stores
+  # The venv's python, because catkin writes it into the wrappers of installed scripts; Debian 13's reads the second name.
   cd "$root"
-  # By our catkin_make, which leaves out a learner's package that asks for what nobody has; messages for C++ and Python alone.
+  # With our catkin_make, which leaves out learners' packages whose dependencies are not available; messages for C++ and Python only.
   ROS_LANG_DISABLE=genlisp PYTHONPATH=src/workspace_needs/src ROS_PACKAGE_PATH=src:/usr/share logged build \
     python3 src/workspace_needs/scripts/catkin_make --no-color "-DPYTHON_EXECUTABLE=$venv/bin/python3" "-DPython_EXECUTABLE=$venv/bin/python3" \
     "-DCPP_LESSONS:BOOL=$cpp" ||

@@ -15,20 +15,20 @@ from car_control.node import Ending, read_settings, start_node
 from car_control.settings import bounded
 from geometry_msgs.msg import Twist
 
-FLUSH_TIME = 0.2  # s: rospy sends from threads of its own, which end with the process
+FLUSH_TIME = 0.2  # s: rospy's threads need this to send before the process ends
 IN_TERMINAL = "rosrun car_control keyboard_control.py --terminal"
 
 
 @dataclass(frozen=True)
 class KeySettings:
-    """The node key_control's settings."""
+    """Settings of the node key_control."""
 
     speed: float = bounded(0, 20, "m/s while W or S is held")
     max_steering_angle: float = bounded(0, 1.2, "rad while A or D is held")
 
 
 class KeyControl:
-    """Publishes what the keys say. The keys come from run(turn) of a window or a terminal."""
+    """Publishes the keys' commands. A window's or terminal's run(turn) delivers the keys."""
 
     def __init__(self, settings):
         self.settings, self.pace = settings, Pace()
@@ -37,7 +37,7 @@ class KeyControl:
         self.ending = Ending()
 
     def turn(self, keys):
-        """Publish if it is time to; a line that says what is driven, or None at the end."""
+        """Publish if due; returns a line with the command, or None at the end."""
         if self.ending.asked.is_set() or self.master.gone:
             return None
         speed, angle = command(keys, self.settings.speed, self.settings.max_steering_angle)
@@ -51,7 +51,7 @@ class KeyControl:
         self.publisher.publish(message)
 
     def stop(self):
-        """Leave the car standing, if it was this node that drove it."""
+        """Stop the car if this node has driven it."""
         if self.pace.sent != (0.0, 0.0):
             self.publish(0.0, 0.0)
             time.sleep(FLUSH_TIME)
@@ -59,7 +59,7 @@ class KeyControl:
 
 
 def open_keys(in_terminal):
-    """run(turn) of the terminal or of a new window; ends with one line where there is none."""
+    """run(turn) of the terminal or of a new window; exits with one line if there is neither."""
     if in_terminal:
         if not sys.stdin.isatty():
             sys.exit(f"keyboard_control: no terminal to read keys from; type: {IN_TERMINAL}")
@@ -91,5 +91,5 @@ def main():
 if __name__ == "__main__":
     try:
         main()
-    except KeyboardInterrupt:  # while the node was still looking for its master
+    except KeyboardInterrupt:  # while the node was still waiting for its master
         sys.exit(130)

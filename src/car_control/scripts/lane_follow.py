@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Follows the yellow line by camera: finds it, steers with PID, slows down before bends.
 
-One command on motor_output for each image; what was found is drawn on ~picture.
+One command on motor_output for each image; ~picture shows the image with what was found.
 """
 
 import threading
@@ -20,15 +20,15 @@ from geometry_msgs.msg import Twist
 from sensor_msgs.msg import Image
 
 CHECK_PERIOD = 0.1  # s
-FLUSH_TIME = 0.2  # s, wall: rospy sends from threads of its own, which end with the process
+FLUSH_TIME = 0.2  # s, wall: rospy's threads need this to send before the process ends
 
 
 class LaneFollow:
-    """All driving is in LaneDriver; this node gives it images and says what it does."""
+    """The node: passes images to LaneDriver, which does all the driving, and logs its state."""
 
     def __init__(self, settings):
         self.driver, self.bridge = LaneDriver(settings), cv_bridge.CvBridge()
-        self.lock = threading.Lock()  # callbacks and the timer come on threads of their own
+        self.lock = threading.Lock()  # callbacks and the timer run in different threads
         self.arrival, self.standing = rospy.get_time(), True
         self.publisher = rospy.Publisher("motor_output", Twist, queue_size=1)
         self.picture = rospy.Publisher("~picture", Image, queue_size=1)
@@ -92,7 +92,7 @@ class LaneFollow:
             self.driver.settings = settings
 
     def stop(self):
-        """Leave the car standing: no image starts it again."""
+        """Stop the car for good: no image starts it again."""
         self.timer.shutdown()
         self.images.unregister()
         with self.lock:

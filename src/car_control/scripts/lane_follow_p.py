@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The simplest lane follower, to measure others by: plain P, one speed, no idea of a bend.
+"""The simplest lane follower, as a baseline: plain P at a constant speed, blind to bends.
 
 Finds the yellow line in a few rows of the image, as the line follower tutorials do, and steers by
-how far it is from the middle.  最简单的巡线：只有比例控制，速度不变，用来作比较。
+its distance from the middle.  最简单的巡线：只有比例控制，速度不变，用来作比较。
 """
 
 import time
@@ -17,14 +17,14 @@ from sensor_msgs.msg import Image
 # Hue 0..180, saturation 0..255, value 0..255.  色调、饱和度、亮度。
 LOWER_YELLOW = numpy.array([20, 43, 46])
 UPPER_YELLOW = numpy.array([35, 255, 255])
-BAND_TOP, BAND_HEIGHT = 5 / 6, 1 / 54  # parts of the image's height
+BAND_TOP, BAND_HEIGHT = 5 / 6, 1 / 54  # share of the image's height
 SPEED = 1.5  # m/s
-GAIN = 0.6  # rad when the line is at the image's edge
+GAIN = 0.6  # rad if the line is at the image's edge
 MAX_ANGLE = 0.34  # rad
 
 
 def find_line(image):
-    """Where the line is: -1 at the image's left edge, 1 at the right one; None if nowhere."""
+    """The line's place: -1 is the image's left edge, 1 the right edge; None: no line."""
     height, width = image.shape[:2]
     top = int(BAND_TOP * height)
     band = image[top : top + max(1, int(BAND_HEIGHT * height))]
@@ -56,10 +56,10 @@ class LaneFollowP:
         self.motor_pub.publish(command)
 
     def stop(self):
-        self.image_sub.unregister()  # or the next image would start the car again
-        for _ in range(3):  # sending takes a moment, and an image may still be at work
+        self.image_sub.unregister()  # else the next image would start the car again
+        for _ in range(3):  # sending takes time, and a callback may still be running
             self.motor_pub.publish(Twist())
-            time.sleep(0.1)  # s, on the wall: simulated time may stand still  用真实时间
+            time.sleep(0.1)  # s of wall time: simulated time may be paused  用真实时间
 
 
 def main():

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Turns Twist or AckermannDriveStamped into commands for the car's six joint controllers.
 
-Two things make the car stop: no command for ~timeout, and the end of the node that sent them. That
-end is seen at once only if no other publisher is connected to that topic; else after ~timeout.
+The car stops if no command comes for ~timeout, and when the node that sends commands ends: at once
+if no other publisher is connected to that topic, else after ~timeout.
 """
 
 import math
@@ -17,9 +17,9 @@ from car_control.reconfigure import serve_settings
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Bool, Float64
 
-WAKE = 0.02  # s, wall: how soon the end of a sender is seen, whatever the clock does
-STILL_CLOCK = 0.1  # s, wall, between repeated commands while simulated time stands
-FLUSH_TIME = 0.1  # s, wall: rospy sends from threads of its own, which end with the process
+WAKE = 0.02  # s, wall: how often to check for a sender's end, whatever the clock does
+STILL_CLOCK = 0.1  # s, wall, between repeated commands while simulated time is paused
+FLUSH_TIME = 0.1  # s, wall: rospy's threads need this to send before the process ends
 
 
 class MotorControl:
@@ -27,9 +27,9 @@ class MotorControl:
 
     def __init__(self, settings):
         self.motor = Motor(settings)
-        self.lock = threading.Lock()  # callbacks come on threads of their own
+        self.lock = threading.Lock()  # callbacks run in different threads
         self.sent = Drive(0.0, 0.0)
-        self.next_time = self.sent_wall = -math.inf  # s, of ROS's clock and of the wall's
+        self.next_time = self.sent_wall = -math.inf  # s, ROS time and wall time
         self.source = None  # the topic of the last command
         self.publishers = {
             name: rospy.Publisher(f"{settings.namespace}/{name}/command", Float64, queue_size=10)
@@ -67,7 +67,7 @@ class MotorControl:
                 rospy.logwarn("emergency stop" if msg.data else "emergency stop is over")
             self.motor.emergency = msg.data
             if msg.data:
-                self.motor.forget()  # nothing from before goes on afterwards
+                self.motor.forget()  # no earlier command is resumed afterwards
             self.send(self.motor.drive(rospy.get_time()))
 
     def change(self, settings):
@@ -75,7 +75,7 @@ class MotorControl:
             self.motor.settings = settings
 
     def send(self, drive):
-        """Publish to all six; the lock is held."""
+        """Publish to all six controllers; call with the lock held."""
         self.sent, self.sent_wall = drive, time.monotonic()
         for name, value in controller_commands(self.motor.settings, drive).items():
             self.publishers[name].publish(value)
@@ -84,7 +84,7 @@ class MotorControl:
         """Send what is due now; a stop is always due."""
         with self.lock:
             if self.source and self.subscribers[self.source].get_num_connections() == 0:
-                self.motor.forget()  # whoever drove has ended, or was killed
+                self.motor.forget()  # the node that drove has ended, or was killed
             now = rospy.get_time()
             drive = self.motor.drive(now)
             if self.is_due(now) or (drive.speed == 0 and self.sent.speed != 0):
@@ -102,14 +102,14 @@ class MotorControl:
         return time.monotonic() - self.sent_wall >= STILL_CLOCK
 
     def spin(self, ending):
-        clock = rospy.rostime.get_rostime_cond()  # told of each new simulated time
+        clock = rospy.rostime.get_rostime_cond()  # notified of each new simulated time
         while not ending.asked.is_set():
             with clock:
                 clock.wait(min(WAKE, max(self.next_time - rospy.get_time(), 0.001)))
             self.repeat()
 
     def stop(self):
-        """The last commands: stand. Those who send no longer reach us."""
+        """Send the final stop commands, after unsubscribing."""
         for subscriber in self.subscribers.values():
             subscriber.unregister()
         with self.lock:

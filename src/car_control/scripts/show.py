@@ -15,7 +15,7 @@ NO_IMAGE_TIME = 5.0  # s, wall
 
 
 class Camera:
-    """Keeps the newest image for the main thread: windows belong to the thread that made them."""
+    """Keeps the newest image for the main thread, which must do all window calls."""
 
     def __init__(self):
         self.msg = None
@@ -29,7 +29,7 @@ class Camera:
         self.arrived.set()
 
     def next_image(self):
-        """The newest image as BGR, or None after a moment without a new one, or of a bad one."""
+        """The newest image as BGR; None if none came for a moment, or it was unusable."""
         if not self.arrived.wait(KEY_WAIT_MS / 1000):
             return None
         self.arrived.clear()
@@ -37,7 +37,7 @@ class Camera:
 
 
 def is_closed():
-    """Whether the person closed the window with the mouse.  窗口是否已被关闭。"""
+    """Whether the user closed the window.  窗口是否已被关闭。"""
     return cv2.getWindowProperty(WINDOW, cv2.WND_PROP_VISIBLE) < 1
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Publishes odom, and the transform odom -> base_link, from the car's wheels and hinges.
+"""Publishes odom, and the transform odom -> base_link, from the angles of wheels and hinges.
 
-What navigation needs of a car: it knows no world, only joint states, as a real car's node would.
+Navigation needs it. As a real car's node, it only uses joint states, no simulator ground truth.
 """
 
 import math
@@ -59,7 +59,7 @@ class WheelOdometry:
                                       f"{self.states.resolved_name}")
             return
         if states.header.stamp == self.last_stamp:
-            return  # the same transform twice is a warning in every listener
+            return  # a repeated transform causes a warning in every listener
         self.last_stamp = states.header.stamp
         left, right, *hinges = (place[joint] for joint in JOINTS)
         motion = self.reckoning.add(states.header.stamp.to_sec(), left, right,

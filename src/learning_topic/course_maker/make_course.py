@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the course model (sdf, material, texture) from its track file; same input, same bytes."""
+"""Writes the course model (SDF, material, texture) from its track file, reproducibly."""
 
 import argparse
 import sys

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exercise near_rows: look at what is near.  练习：只看近处。"""
+"""Exercise near_rows: use only the near rows.  练习：只看近处。"""
 
 import cv2
 import cv_bridge
@@ -10,7 +10,7 @@ from sensor_msgs.msg import Image
 # Hue 0..180, saturation 0..255, value 0..255.  色调、饱和度、亮度。
 LOWER_YELLOW = numpy.array([20, 43, 46])
 UPPER_YELLOW = numpy.array([90, 255, 255])
-BAND_PX = 20  # rows that are looked at  只看这么多行
+BAND_PX = 20  # number of rows searched  只看这么多行
 
 
 def yellow_mask(image):
@@ -21,7 +21,7 @@ def yellow_mask(image):
 
 def find_line(image):
     """Column and row of the yellow line's middle at 5/6 of the height, or None.  黄线的中心。"""
-    top = 0  # yours: the first of BAND_PX rows, and only these  请改成 5/6 高处，只看 BAND_PX 行
+    top = 0  # yours: start at 5/6 of the height, use only BAND_PX rows  请改成 5/6 高处，只看 BAND_PX 行
     moments = cv2.moments(yellow_mask(image[top:]), binaryImage=True)
     if moments["m00"] == 0:
         return None

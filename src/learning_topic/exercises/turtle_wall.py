@@ -15,7 +15,7 @@ class Turtle:
         rospy.Subscriber("/turtle1/pose", Pose, self.pose_callback, queue_size=1)
 
     def pose_callback(self, pose):
-        """Called for each pose: drive on, or stand.  每个位姿调用一次：前进或停下。"""
+        """Called for each pose: drive on or stop.  每个位姿调用一次：前进或停下。"""
         command = Twist()
         command.linear.x = SPEED  # yours: only up to STOP_X  请修改：只到 STOP_X 为止
         self.cmd_vel_pub.publish(command)

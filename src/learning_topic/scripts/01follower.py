@@ -10,7 +10,7 @@ def image_callback(msg):
 
 
 rospy.init_node("follower")
-# A buffer larger than one image: without it the images seen are old ones.
+# The buffer must be larger than one image, or the images received are old ones.
 # 缓冲区要大于一帧图像，否则收到的是旧图像。
 rospy.Subscriber("camera/rgb/image_raw", Image, image_callback, queue_size=1, buff_size=2**24)
 rospy.spin()

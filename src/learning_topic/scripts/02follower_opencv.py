@@ -8,7 +8,7 @@ from sensor_msgs.msg import Image
 
 
 def blue_channel(image):
-    """The blue part of a BGR image, as a grey picture.  取出蓝色通道。"""
+    """The blue channel of a BGR image, as a grey image.  取出蓝色通道。"""
     return image[:, :, 0]
 
 
@@ -21,7 +21,7 @@ class Follower:
         )
 
     def image_callback(self, msg):
-        # OpenCV keeps colours as blue, green, red.  OpenCV 的颜色顺序是蓝、绿、红。
+        # OpenCV stores colours in the order blue, green, red.  OpenCV 的颜色顺序是蓝、绿、红。
         image = self.bridge.imgmsg_to_cv2(msg, desired_encoding="bgr8")
         cv2.imshow("showImage", blue_channel(image))
         cv2.waitKey(3)  # ms; without it the window stays empty  没有这句窗口不会刷新

@@ -28,7 +28,7 @@ class Follower:
         )
 
     def image_callback(self, msg):
-        # Say bgr8: the camera sends rgb8, and red and blue would be swapped.
+        # Ask for bgr8: the camera sends rgb8, so red and blue would be swapped.
         # 必须写明 bgr8：相机发来的是 rgb8，否则红蓝颠倒。
         image = self.bridge.imgmsg_to_cv2(msg, desired_encoding="bgr8")
         mask = yellow_mask(image)

@@ -10,7 +10,7 @@ from sensor_msgs.msg import Image
 # Hue 0..180, saturation 0..255, value 0..255.  色调、饱和度、亮度。
 LOWER_YELLOW = numpy.array([20, 43, 46])
 UPPER_YELLOW = numpy.array([90, 255, 255])
-BAND_PX = 20  # rows that are looked at  只看这么多行
+BAND_PX = 20  # number of rows searched  只看这么多行
 
 
 def yellow_mask(image):
@@ -20,13 +20,13 @@ def yellow_mask(image):
 
 
 def band_rows(height):
-    """The rows that are looked at.  要看的那几行。"""
-    top = 3 * height // 4  # a whole number: rows cannot be halved  行号必须是整数
+    """The rows that are searched.  要看的那几行。"""
+    top = 3 * height // 4  # //: a row number must be an integer  行号必须是整数
     return slice(top, top + BAND_PX)
 
 
 def band_mask(image):
-    """The yellow mask in those rows, 0 in all others.  只保留这几行的掩膜。"""
+    """The yellow mask in these rows, 0 in all others.  只保留这几行的掩膜。"""
     rows = band_rows(image.shape[0])
     mask = numpy.zeros(image.shape[:2], numpy.uint8)
     mask[rows] = yellow_mask(image[rows])

@@ -13,7 +13,7 @@ from sensor_msgs.msg import Image
 # Hue 0..180, saturation 0..255, value 0..255.  色调、饱和度、亮度。
 LOWER_YELLOW = numpy.array([20, 43, 46])
 UPPER_YELLOW = numpy.array([90, 255, 255])
-BAND_PX = 20  # rows that are looked at  只看这么多行
+BAND_PX = 20  # number of rows searched  只看这么多行
 SPEED = 0.15  # m/s
 STEER_GAIN = 1 / 1000  # rad/s per px
 
@@ -25,7 +25,7 @@ def yellow_mask(image):
 
 
 def band_rows(height):
-    """The rows that are looked at.  要看的那几行。"""
+    """The rows that are searched.  要看的那几行。"""
     top = 5 * height // 6  # nearer than in lesson 4: the robot acts on it  比第四课更近
     return slice(top, top + BAND_PX)
 
@@ -69,11 +69,11 @@ class Follower:
         cv2.waitKey(3)  # ms
 
     def stop(self):
-        """Stop before leaving: the last command stands until the next one.  退出前停车。"""
-        self.image_sub.unregister()  # or the next image would start the robot again
-        for _ in range(3):  # sending takes a moment, and an image may still be at work
+        """Stop before exiting: the robot keeps following the last command.  退出前停车。"""
+        self.image_sub.unregister()  # else the next image would start the robot again
+        for _ in range(3):  # sending takes time, and a callback may still be running
             self.cmd_vel_pub.publish(Twist())
-            time.sleep(0.1)  # s, on the wall: simulated time may stand still  用真实时间
+            time.sleep(0.1)  # s of wall time: simulated time may be paused  用真实时间
 
 
 def main():

@@ -13,7 +13,7 @@ from sensor_msgs.msg import Image
 # Hue 0..180, saturation 0..255, value 0..255.  色调、饱和度、亮度。
 LOWER_YELLOW = numpy.array([20, 43, 46])
 UPPER_YELLOW = numpy.array([90, 255, 255])
-BAND_PX = 20  # rows that are looked at  只看这么多行
+BAND_PX = 20  # number of rows searched  只看这么多行
 SPEED = 0.2  # m/s
 KP = 0.0025  # rad/s per px  比例
 KI = 0.0005  # rad/s per px·s  积分
@@ -28,7 +28,7 @@ def yellow_mask(image):
 
 
 def band_rows(height):
-    """The rows that are looked at.  要看的那几行。"""
+    """The rows that are searched.  要看的那几行。"""
     top = 5 * height // 6
     return slice(top, top + BAND_PX)
 
@@ -58,12 +58,12 @@ class Follower:
         )
 
     def reset(self):
-        """Forget the past.  清零。"""
+        """Reset sum and last error.  清零。"""
         self.total = 0.0  # px·s
         self.last = None  # offset in px and time in s of the last image  上一帧
 
     def steer(self, offset_px, stamp):
-        """Turn rate in rad/s for a line this far right of the middle at this time in s."""
+        """Turn rate in rad/s for a line this far right of the middle; `stamp`: time in s."""
         change = 0.0  # px/s
         if self.last and stamp > self.last[1]:
             past = stamp - self.last[1]
@@ -89,11 +89,11 @@ class Follower:
         cv2.waitKey(3)  # ms
 
     def stop(self):
-        """Stop before leaving: the last command stands until the next one.  退出前停车。"""
-        self.image_sub.unregister()  # or the next image would start the robot again
-        for _ in range(3):  # sending takes a moment, and an image may still be at work
+        """Stop before exiting: the robot keeps following the last command.  退出前停车。"""
+        self.image_sub.unregister()  # else the next image would start the robot again
+        for _ in range(3):  # sending takes time, and a callback may still be running
             self.cmd_vel_pub.publish(Twist())
-            time.sleep(0.1)  # s, on the wall: simulated time may stand still  用真实时间
+            time.sleep(0.1)  # s of wall time: simulated time may be paused  用真实时间
 
 
 def main():

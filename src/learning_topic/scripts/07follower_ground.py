@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lesson 7: steer by metres on the floor, not by pixels.  第七课：按地面上的米来转向。"""
+"""Lesson 7: steer by metres on the ground, not by pixels.  第七课：按地面上的米来转向。"""
 
 import math
 import time
@@ -14,14 +14,14 @@ from sensor_msgs.msg import Image
 # Hue 0..180, saturation 0..255, value 0..255.  色调、饱和度、亮度。
 LOWER_YELLOW = numpy.array([20, 43, 46])
 UPPER_YELLOW = numpy.array([90, 255, 255])
-BAND_PX = 20  # rows that are looked at  只看这么多行
-NEAR_ROW, FAR_ROW = 0.965, 0.90  # parts of the image's height, 1 at the bottom  占图像高度
+BAND_PX = 20  # number of rows searched  只看这么多行
+NEAR_ROW, FAR_ROW = 0.965, 0.90  # share of the image's height, 1 at the bottom  占图像高度
 SPEED = 0.2  # m/s
 SEARCH_TURN = 0.5  # rad/s, while the line is lost
 MAX_TURN = 1.5  # rad/s
 IMAGE_TIMEOUT = 0.5  # s without an image, then stand still  超时停车
-GAIN = 4.0  # how much harder than the near arc when the arcs differ  两段圆弧不同时的增益
-# The waffle's camera: m before, left of and above base_footprint; rad, horizontal field of view.
+GAIN = 4.0  # gain on the difference of the two arcs  两段圆弧不同时的增益
+# The waffle's camera: m ahead of, left of and above base_footprint; rad, horizontal field of view.
 CAMERA = {"forward": 0.069, "left": -0.047, "height": 0.117, "hfov": 1.3439}
 
 
@@ -33,7 +33,7 @@ def find_line(image, row):
 
 
 def to_ground(column, row, image_shape, camera):
-    """Where on the floor a pixel lies: x forward, y left of base_footprint, in m.  像素到地面。"""
+    """The ground point of a pixel: x forward, y left of base_footprint, in m.  像素到地面。"""
     height_px, width_px = image_shape[:2]
     focal_px = width_px / 2 / math.tan(camera["hfov"] / 2)
     distance = camera["height"] * focal_px / (row - height_px / 2)
@@ -42,7 +42,7 @@ def to_ground(column, row, image_shape, camera):
 
 
 def see_line(image, camera):
-    """Floor points (x, y) of the line in the near and the far row, marked in the image."""
+    """Ground points (x, y) of the line in the near and far row; also marks them in the image."""
     points = []
     for part in (NEAR_ROW, FAR_ROW):
         row = int(part * image.shape[0])
@@ -54,12 +54,12 @@ def see_line(image, camera):
 
 
 def bend_to(x, y):
-    """Curvature in 1/m, left positive, of the arc from the base to this floor point.  弯度。"""
+    """Curvature in 1/m, left positive, of the arc from the base to this ground point.  曲率。"""
     return 2 * y / (x * x + y * y)
 
 
 def steer(points, speed):
-    """Turn rate in rad/s. On the line one arc leads through both points, in a bend too.
+    """Turn rate in rad/s. On the line, one arc passes through both points, even in a bend.
 
     车在线上时，同一段圆弧通过远近两点，弯道里也一样。
     """
@@ -88,7 +88,7 @@ class Follower:
         cv2.waitKey(3)  # ms
 
     def command(self, points):
-        """What to drive when the line is seen at these points.  看到这些点时怎么走。"""
+        """The command when the line is seen at these points.  看到这些点时怎么走。"""
         command = Twist()
         if points:
             self.side = math.copysign(1.0, points[0][1])
@@ -106,11 +106,11 @@ class Follower:
             self.cmd_vel_pub.publish(Twist())
 
     def stop(self):
-        """Stop before leaving: the last command stands until the next one.  退出前停车。"""
-        self.image_sub.unregister()  # or the next image would start the robot again
-        for _ in range(3):  # sending takes a moment, and an image may still be at work
+        """Stop before exiting: the robot keeps following the last command.  退出前停车。"""
+        self.image_sub.unregister()  # else the next image would start the robot again
+        for _ in range(3):  # sending takes time, and a callback may still be running
             self.cmd_vel_pub.publish(Twist())
-            time.sleep(0.1)  # s, on the wall: simulated time may stand still  用真实时间
+            time.sleep(0.1)  # s of wall time: simulated time may be paused  用真实时间
 
 
 def main():

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Publish a message type of our own.  发布自定义消息。"""
+"""Publish messages of a custom type.  发布自定义消息。"""
 
 import rospy
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Receive a message type of our own.  订阅自定义消息。"""
+"""Receive messages of a custom type.  订阅自定义消息。"""
 
 import rospy
 

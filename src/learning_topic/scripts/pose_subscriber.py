@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Read where the turtle is.  订阅海龟的位姿。"""
+"""Read the turtle's pose.  订阅海龟的位姿。"""
 
 import sys
 

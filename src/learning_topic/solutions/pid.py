@@ -20,7 +20,7 @@ KD = 0.001  # rad/s per px/s  微分
 
 
 def line_offset(image):
-    """px (of WIDTH), how far right of the middle the line is in the near rows, or None."""
+    """How far right of the middle the line is in the near rows, px of WIDTH; None: no line."""
     top = 5 * image.shape[0] // 6
     band = image[top : top + image.shape[0] // 54]  # 20 rows of 1080
     hsv = cv2.cvtColor(band, cv2.COLOR_BGR2HSV)
@@ -31,7 +31,7 @@ def line_offset(image):
 
 
 class Driver:
-    """Knows no ROS: check_exercise calls it, and so does the node below.  不依赖 ROS"""
+    """No ROS in here: check_exercise calls it, and so does the node below.  不依赖 ROS"""
 
     def __init__(self):
         self.total = 0.0  # px·s, the sum of all offsets times dt  误差的累积
@@ -48,7 +48,7 @@ class Driver:
         return -(KP * offset_px + KI * self.total + KD * change)
 
     def drive(self, image, time):
-        """m/s and rad/s, left positive, after a BGR image of that time in s."""
+        """Speed (m/s) and turn rate (rad/s, left positive) for a BGR image at this time (s)."""
         offset_px = line_offset(image)
         if offset_px is None:
             return 0.0, 0.0  # line lost: stand still  线丢了，停车
@@ -69,8 +69,8 @@ class Follower:
         self.cmd_vel_pub.publish(command)
 
     def stop(self):
-        """Stop before leaving: the last command stands until the next one.  退出前停车。"""
-        self.image_sub.unregister()  # or the next image would start the robot again
+        """Stop before exiting: the robot keeps following the last command.  退出前停车。"""
+        self.image_sub.unregister()  # else the next image would start the robot again
         for _ in range(3):
             self.cmd_vel_pub.publish(Twist())
             time.sleep(0.1)  # s

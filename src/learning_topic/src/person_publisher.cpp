@@ -1,5 +1,5 @@
-// Publish a message type of our own.  发布自定义消息。
-#include <learning_topic/Person.h>  // made from msg/Person.msg  由 msg/Person.msg 生成
+// Publish messages of a custom type.  发布自定义消息。
+#include <learning_topic/Person.h>  // generated from msg/Person.msg  由 msg/Person.msg 生成
 #include <ros/ros.h>
 
 const double RATE_HZ = 10;

@@ -1,4 +1,4 @@
-// Receive a message type of our own.  订阅自定义消息。
+// Receive messages of a custom type.  订阅自定义消息。
 #include <learning_topic/Person.h>
 #include <ros/ros.h>
 

@@ -1,4 +1,4 @@
-// Read where the turtle is.  订阅海龟的位姿。
+// Read the turtle's pose.  订阅海龟的位姿。
 #include <ros/ros.h>
 #include <turtlesim/Pose.h>
 
@@ -11,5 +11,5 @@ int main(int argc, char** argv) {
   ros::NodeHandle node;
   // The subscription lasts as long as this object.  对象销毁时订阅随之取消
   ros::Subscriber subscriber = node.subscribe("/turtle1/pose", 10, poseCallback);
-  ros::spin();  // calls the callbacks, until Ctrl-C  循环执行回调函数
+  ros::spin();  // runs the callbacks until Ctrl-C  循环执行回调函数
 }

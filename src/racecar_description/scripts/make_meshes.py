@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Makes the car's meshes from plain solids: `make_meshes.py [FOLDER]`, same bytes each time.
+"""Makes the car's meshes from simple solids, reproducibly: `make_meshes.py [FOLDER]`.
 
 Wavefront OBJ in m. The chassis is in base_link's frame (x forward, z up, z = 0 is the ground), the
-wheel in its own, with the axle along y. Nothing may reach the camera's view or the laser's plane.
+wheel in its own, with the axle along y. No part may be in the camera's view or the laser's plane.
 
 A solid is a list of faces, a face a list of corners (x, y, z), counter-clockwise from outside.
 """
@@ -21,7 +21,7 @@ COLOURS = {  # RGB
 
 
 def loft(outlines):
-    """A skin over outlines of equally many corners, from the rear one to the front one, closed."""
+    """A closed skin over outlines with equal numbers of corners, from the rear to the front."""
     faces = [outlines[0][::-1], outlines[-1]]
     for rear, front in pairwise(outlines):
         for i in range(len(rear)):
@@ -31,17 +31,17 @@ def loft(outlines):
 
 
 def across(x, y, z):
-    """An upright rectangle at x, seen from the front; y, z: (low, high) each."""
+    """A vertical rectangle at x, seen from the front; y, z: (low, high) each."""
     return [(x, y[0], z[0]), (x, y[1], z[0]), (x, y[1], z[1]), (x, y[0], z[1])]
 
 
 def box(x, y, z):
-    """x, y, z: (low, high) each."""
+    """A cuboid; x, y, z: (low, high) each."""
     return loft([across(x[0], y, z), across(x[1], y, z)])
 
 
 def both(solid):
-    """The solid, and its mirror image on the car's right side."""
+    """The solid and its mirror image on the car's right side."""
     return solid + [[(x, -y, z) for x, y, z in face[::-1]] for face in solid]
 
 
@@ -53,7 +53,7 @@ def hull(x, bottom, middle, top, heights):
 
 
 def lathe(profile, sides):
-    """A profile [(y, radius), ...] turned about y, from the right face to the left one."""
+    """A profile [(y, radius), ...] rotated about y, from the right face to the left one."""
     angles = [2 * pi * i / sides for i in range(sides)]
     rings = [[(r * sin(a), y, r * cos(a)) for a in angles] for y, r in profile]
     return loft(rings)
@@ -72,7 +72,7 @@ def spoke(angle, inner, outer, half_width, y):
 
 
 def chassis():
-    """Material -> solid of all that does not move."""
+    """The solids of all fixed parts, by material."""
     body = loft([
         hull(-0.060, 0.035, 0.045, 0.030, (0.045, 0.075, 0.095)),
         hull(0.000, 0.050, 0.060, 0.036, (0.034, 0.085, 0.132)),
@@ -106,7 +106,7 @@ def chassis():
 
 
 def rear_wing():
-    """A plane on two posts between two upright end plates."""
+    """A plane on two posts, between two vertical end plates."""
     plane = loft([across(-0.092, (-0.118, 0.118), (0.142, 0.148)),
                   across(-0.045, (-0.118, 0.118), (0.132, 0.140))])
     return plane + both(box((-0.095, -0.040), (0.118, 0.123), (0.105, 0.155)))
@@ -126,13 +126,13 @@ def underside():
 
 
 def camera_mast():
-    """A post behind the laser, and the arm that holds the camera above it."""
+    """A post behind the laser, with an arm that holds the camera above it."""
     return [*box((0.292, 0.304), (-0.006, 0.006), (0.080, 0.200)),
             *box((0.292, 0.364), (-0.006, 0.006), (0.192, 0.202))]
 
 
 def wheel():
-    """Material -> solid of a wheel of radius 50 and width 45 mm."""
+    """The solids of a wheel (radius 50 mm, width 45 mm), by material."""
     tyre = lathe([(-0.0225, 0.035), (-0.0225, 0.044), (-0.0150, 0.050), (0.0150, 0.050),
                   (0.0225, 0.044), (0.0225, 0.035)], 28)
     spokes = []
@@ -142,7 +142,7 @@ def wheel():
 
 
 def obj_text(parts):
-    """OBJ text of {material: solid}; corners to a tenth of a micrometre, each listed once."""
+    """OBJ text of {material: solid}; corners are rounded to 0.1 micrometres and listed once."""
     numbers, lines = {}, []
     for material, solid in parts.items():
         lines.append(f"usemtl {material}")
@@ -164,7 +164,7 @@ def mtl_text():
 
 
 def all_meshes():
-    """File name -> text."""
+    """The files' texts, by name."""
     return {LIBRARY: mtl_text(), "chassis.obj": obj_text(chassis()), "wheel.obj": obj_text(wheel())}
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Paints the racetrack and its start line: `make_racetrack.py [MODELS]`; same input, same bytes.
+"""Paints the racetrack and its start line, reproducibly: `make_racetrack.py [MODELS]`.
 
 Reads tracks/racetrack.yaml (m, world frame) and writes the textures of models/racetrack and
-models/smartcar_plane. The road's colours follow from the distance to its centre line alone.
+models/smartcar_plane. The road's colours only depend on the distance to its centre line.
 """
 
 import math
@@ -18,8 +18,8 @@ PACKAGE = Path(__file__).resolve().parent.parent
 TRACK = PACKAGE / "tracks" / "racetrack.yaml"
 PX_PER_M = 256
 EDGE_LINE = 0.03  # m, width of the road's edge lines
-VERGE = 0.03  # m of asphalt outside of them
-MOWN = 0.5  # m, width of the lawn's stripes: something to see the speed by
+VERGE = 0.03  # m of asphalt outside them
+MOWN = 0.5  # m, width of the lawn's stripes, which make the speed visible
 PLATE_CHECKS, CHECK_PX = (6, 16), 12  # squares along and across the road; a square's side
 
 LAWNS = ((62, 104, 58), (70, 114, 64))  # RGB
@@ -49,7 +49,7 @@ def round_corners(corners):
 
 
 def distance_to_piece(piece, x, y):
-    """Distance (m) of points from a straight, or from an arc where they are abreast of it."""
+    """Distance (m) of points from a straight, or from an arc within its angles."""
     x0, y0, heading, length, curvature = piece
     ahead = math.cos(heading) * (x - x0) + math.sin(heading) * (y - y0)
     left = -math.sin(heading) * (x - x0) + math.cos(heading) * (y - y0)
@@ -62,22 +62,22 @@ def distance_to_piece(piece, x, y):
 
 
 def distance_to_line(pieces, x, y):
-    """Distance (m) of points from the closed line; rounded, so that no last digit shows."""
+    """Distance (m) of points from the closed line; rounded, so that last digits have no effect."""
     nearest = np.min([distance_to_piece(piece, x, y) for piece in pieces], axis=0)
-    # Rounding can leave a hair between two pieces: there the joints themselves count.
+    # Rounding can leave a tiny gap between two pieces, so the joints are included.
     joints = np.min([np.hypot(x - piece[0], y - piece[1]) for piece in pieces], axis=0)
     return np.round(np.minimum(nearest, joints), 7)
 
 
 def paint(image, cover, colour):
-    """Lay a colour over the image, with a cover of 0 to 1 for each pixel."""
+    """Blend a colour into the image, with an opacity of 0 to 1 per pixel."""
     whole = np.floor(np.clip(cover, 0, 1) * 255 + 0.5)[..., None]
     mixed = (image * (255 - whole) + np.array(colour, float) * whole) / 255
     image[:] = np.floor(mixed + 0.5).astype(np.uint8)
 
 
 def draw_track(track):
-    """The plane's picture, RGB: up is +y, right is +x."""
+    """The plane's texture, RGB: up is +y, right is +x."""
     corners = np.array([(corner["x"], corner["y"]) for corner in track["corners"]])
     low, high = corners.min(axis=0), corners.max(axis=0)
     middle = np.round((low + high) / 2, 6)
@@ -100,7 +100,7 @@ def draw_track(track):
 
 
 def draw_start_line(track):
-    """A chequered plate, RGB, with the road's yellow line going on across it."""
+    """A chequered plate, RGB, crossed by the road's yellow line."""
     along, across = PLATE_CHECKS
     row, column = np.indices((across * CHECK_PX, along * CHECK_PX))
     dark = (row // CHECK_PX + column // CHECK_PX) % 2 == 0
@@ -111,10 +111,10 @@ def draw_start_line(track):
 
 
 def encode_png(image):
-    """An RGB picture as PNG: written here, because image libraries differ in their bytes."""
+    """An RGB image as PNG; encoded here, because the bytes of image libraries differ."""
     height, width, _ = image.shape
     above = np.vstack([np.zeros((1, width, 3), np.uint8), image[:-1]])
-    rows = np.full((height, 1 + width * 3), 2, np.uint8)  # 2: each byte minus the one above
+    rows = np.full((height, 1 + width * 3), 2, np.uint8)  # filter Up: minus the byte above
     rows[:, 1:] = (image - above).reshape(height, width * 3)
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
     chunks = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 9)), (b"IEND", b""))
@@ -124,7 +124,7 @@ def encode_png(image):
 
 
 def all_textures():
-    """Path below models/ -> bytes."""
+    """The files' bytes, by path below models/."""
     track = yaml.safe_load(TRACK.read_text(encoding="utf-8"))
     return {f"{name}/materials/textures/{name}.png": encode_png(draw(track))
             for name, draw in (("racetrack", draw_track), ("smartcar_plane", draw_start_line))}

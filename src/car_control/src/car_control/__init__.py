@@ -1,1 +1,1 @@
-"""Driving an Ackermann car: its mathematics in `driving`, and what the nodes in scripts/ share."""
+"""Driving an Ackermann car: the mathematics in `driving`, and code shared by the scripts."""

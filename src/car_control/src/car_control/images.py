@@ -1,4 +1,4 @@
-"""Pictures of a camera's messages."""
+"""Arrays from a camera's image messages."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ import numpy as np
 import rospy
 from sensor_msgs.msg import Image
 
-REPEAT = 5.0  # s between two lines about messages that are no pictures
+REPEAT = 5.0  # s between two log lines about unusable messages
 _bridge = cv_bridge.CvBridge()
 
 
 def picture_of(message: Image) -> np.ndarray | None:
-    """(h, w, 3) uint8 BGR; None, and a line, of a message that is no picture."""
+    """The image (h, w, 3), uint8, BGR; None, and a log line, if the message is unusable."""
     try:
         picture = _bridge.imgmsg_to_cv2(message, desired_encoding="bgr8")
         why = "it has no pixels"
-    except (TypeError, ValueError) as error:  # CvBridgeError is one; of too few bytes, huge sizes
+    except (TypeError, ValueError) as error:  # CvBridgeError; too few bytes, huge sizes
         picture, why = None, " ".join(str(error).split())
     if picture is None:
         rospy.logerr_throttle(REPEAT, f"an image that cannot be used: {why}")

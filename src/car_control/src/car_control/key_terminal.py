@@ -1,4 +1,4 @@
-"""Driving keys typed in a plain terminal, which knows nothing of a key's release."""
+"""Driving keys typed in a plain terminal, which does not report when a key is released."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from car_control.keys import DRIVING_KEYS, QUIT_KEY, STOP_KEY, TerminalKeys
 
 TEXT = (
     "Hold W or S to drive, A or D beside it to steer; space stops at once. Press Q to quit.\n"
-    "A terminal does not say when a key is let go: the car stops up to 0.7 s later."
+    "A terminal does not report when a key is released: the car stops up to 0.7 s later."
 )
 PERIOD = 0.02  # s
 ESCAPE = re.compile(r"\x1b(?:[\[O][0-9;]*(.)?)?")  # an arrow's letter, or another key's sequence
@@ -24,23 +24,23 @@ ARROWS = {"A": "w", "B": "s", "C": "d", "D": "a"}
 
 @contextmanager
 def single_keys(terminal: int) -> Iterator[None]:
-    """Each key at once and unseen; whatever happens, the terminal is as before afterwards."""
+    """Keys arrive at once and without echo; afterwards the terminal is always restored."""
     before = termios.tcgetattr(terminal)
     try:
         tty.setcbreak(terminal)
         yield
     finally:
-        with suppress(termios.error):  # the terminal may be closed: nothing is to be put back
+        with suppress(termios.error):  # if the terminal was closed, there is nothing to restore
             termios.tcsetattr(terminal, termios.TCSADRAIN, before)
 
 
 def keys_in(text: str) -> str:
-    """The keys that these characters stand for: lower case, arrows as WASD, no other sequences."""
+    """The keys for these characters: lower case, arrows as WASD, other sequences dropped."""
     return ESCAPE.sub(lambda found: ARROWS.get(found[1] or "", ""), text).lower()
 
 
 def run_terminal(terminal: int, turn: Callable[[frozenset[str]], str | None]) -> None:
-    """Give the keys held to `turn` again and again, and show what it returns in one line.
+    """Call `turn` repeatedly with the keys held, and show what it returns in one line.
 
     Ends with Q, with the terminal, or when `turn` returns None.
     """
@@ -65,7 +65,7 @@ def run_terminal(terminal: int, turn: Callable[[frozenset[str]], str | None]) ->
 
 
 def _typed(terminal: int) -> str | None:
-    """What was typed until now, "" after PERIOD without a key, None if the terminal is gone."""
+    """The characters typed, "" after PERIOD without a key, None if the terminal is closed."""
     try:
         if not select.select([terminal], [], [], PERIOD)[0]:
             return ""

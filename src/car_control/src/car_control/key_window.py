@@ -1,4 +1,4 @@
-"""The window that takes driving keys from the screen's keyboard (Tk)."""
+"""A window (Tk) that receives the driving keys."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ ARROWS = {"up": "w", "left": "a", "down": "s", "right": "d", "space": STOP_KEY}
 
 @ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p)
 def _ignored(_display: int, _event: int) -> int:
-    """An Xlib error handler; Tk hands it the errors that it did not expect."""
+    """An Xlib error handler; Tk passes it the errors that it did not expect."""
     return 0
 
 
 class NoScreen(Exception):
-    """There is no screen to open a window on; the message says why."""
+    """No window can be opened; the message says why."""
 
 
 class KeyWindow:
-    """Opens the window; NoScreen if that is not possible."""
+    """Opens the window; raises NoScreen if that is impossible."""
 
     def __init__(self) -> None:
         _survive_x_errors()
@@ -38,7 +38,7 @@ class KeyWindow:
         self.closed = False
         self.failure: BaseException | None = None
         self.root.title("key_control")
-        # Keys go past the input method: where Chinese is typed, it would keep W for itself.
+        # Bypass the input method: one for Chinese would keep W for itself.
         self.root.tk.call("tk", "useinputmethods", False)
         tkinter.Label(self.root, text=TEXT, padx=40, pady=30).pack()
         self.status = tkinter.Label(self.root, pady=10)
@@ -51,7 +51,7 @@ class KeyWindow:
         self.root.report_callback_exception = self._fail
 
     def run(self, turn: Callable[[frozenset[str]], str | None]) -> None:
-        """Give the keys held to `turn` again and again, and show what it returns.
+        """Call `turn` repeatedly with the keys held, and show what it returns.
 
         Ends with Q, with the window, or when `turn` returns None.
         """
@@ -73,7 +73,7 @@ class KeyWindow:
 
     def _look(self) -> None:
         if self.closed:
-            return  # events of a window on its way out; its label may be gone
+            return  # the window is closing; its label may not exist any more
         shown = self.turn(self.keys.held(time.monotonic()))
         if shown is None:
             self._close()
@@ -98,19 +98,19 @@ class KeyWindow:
         self._look()
 
     def _fail(self, _kind: type, error: BaseException, _trace: object) -> None:
-        """Tk would print an error in a callback and go on, with the car at speed."""
+        """By default Tk prints a callback's error and continues, with the car still moving."""
         self.failure = error
         self._close()
 
 
 def _survive_x_errors() -> None:
-    """Tk unmaps what somebody else has destroyed; Xlib would end the program before it stops."""
+    """If another program destroyed the window, Xlib would exit before the car is stopped."""
     library = ctypes.util.find_library("X11")
     if library:
         ctypes.CDLL(library).XSetErrorHandler(_ignored)
 
 
 def _key(event: tkinter.Event) -> str:
-    """The letter whatever Shift and Caps Lock say."""
+    """The letter, whatever the state of Shift and Caps Lock."""
     name = event.keysym.lower()
     return ARROWS.get(name, name)

@@ -1,7 +1,7 @@
-"""Which driving keys are down, from the events of a window or the characters of a terminal.
+"""Which driving keys are held, from a window's events or a terminal's characters.
 
-Neither tells it plainly: a window's X server sends a release and a press for each repetition of a
-held key, and a terminal sends characters only, and those of the last key alone.
+Neither reports it directly: the X server sends a release and a press for each repetition of a held
+key, and a terminal sends only characters, and repeats only those of the last key.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ STOP_KEY = " "
 QUIT_KEY = "q"
 OPPOSITE = {"w": "s", "s": "w", "a": "d", "d": "a"}
 
-RELEASE_WAIT = 0.03  # s: a release that belongs to a repetition has its press within this
+RELEASE_WAIT = 0.03  # s within which a repetition's release is followed by its press
 FIRST_WAIT = 0.7  # s from a key's character to its first repetition; X servers wait 0.66 at most
-REPEAT_WAIT = 0.25  # s between two repetitions, slow ones (ssh) too
+REPEAT_WAIT = 0.25  # s between two repetitions, even slow ones (ssh)
 
 
 def command(keys: Set[str], speed: float, angle: float) -> tuple[float, float]:
@@ -27,11 +27,11 @@ def command(keys: Set[str], speed: float, angle: float) -> tuple[float, float]:
 
 
 class WindowKeys:
-    """Keys of a window; `wall` is any clock in s that only goes forward.
+    """A window's keys; `wall` is any monotonic clock in s.
 
-    A release counts only after RELEASE_WAIT without a press of the same key. The screen's key
-    repetition stays as the person has it: it is one for all windows, and a program that is killed
-    could not switch it on again.
+    A release only counts after RELEASE_WAIT without a press of the same key. The screen's key
+    repetition is not switched off: it is shared by all windows, and a killed program could not
+    switch it on again.
     """
 
     def __init__(self) -> None:
@@ -47,7 +47,7 @@ class WindowKeys:
             self._released.setdefault(key, wall)
 
     def release_all(self) -> None:
-        """The window lost the keyboard: from now on releases go elsewhere."""
+        """The window lost the focus: releases will not be reported to it."""
         self._down.clear()
         self._released.clear()
 
@@ -60,10 +60,10 @@ class WindowKeys:
 
 
 class TerminalKeys:
-    """Keys of a terminal: down while their characters keep coming.
+    """A terminal's keys: held while their characters keep coming.
 
-    A second key silences the repetition of the first, so its characters keep the first alive too:
-    W, then A beside it, drives a bend. When the last one is let go, all are.
+    A second key stops the repetition of the first, so its characters keep the first one held too:
+    W, then also A, drives a bend. When the last one is released, all are.
     """
 
     def __init__(self) -> None:
@@ -88,9 +88,9 @@ class TerminalKeys:
 
 
 class Pace:
-    """When a command is sent: a new one at once, one that drives ten times a second.
+    """When to send a command: a new one at once; while driving, ten times a second.
 
-    Standing is said for a moment and then no more, so that others can drive meanwhile.
+    A stop is only repeated for a moment, so that other nodes can drive afterwards.
     """
 
     PERIOD = 0.1  # s
@@ -98,11 +98,11 @@ class Pace:
 
     def __init__(self) -> None:
         self.sent = (0.0, 0.0)
-        self._next = math.inf  # s: when the same command is sent again
+        self._next = math.inf  # s, when to send the same command again
         self._farewell_end = -math.inf
 
     def due(self, wanted: tuple[float, float], wall: float) -> bool:
-        """Whether to send it now; if so it counts as sent."""
+        """Whether to send it now; if so, it counts as sent."""
         if wanted != self.sent:
             self._next, self._farewell_end = wall, wall + self.FAREWELL
         elif wall < self._next or (wanted == (0.0, 0.0) and wall > self._farewell_end):

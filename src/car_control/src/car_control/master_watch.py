@@ -1,4 +1,4 @@
-"""Tells a node that the ROS master it registered with has ended: rospy itself does not notice."""
+"""Notices that the ROS master with which a node registered has ended; rospy does not."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import rosgraph
 
 
 class MasterWatch:
-    """Asks once a second, on a thread of its own. Make it after the node is initialised."""
+    """Asks once a second, in its own thread. Create it after the node is initialised."""
 
     PERIOD = 1.0  # s
 

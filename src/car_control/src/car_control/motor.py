@@ -1,4 +1,4 @@
-"""What the car's six joint controllers are told, and when it has to stop; knows no ROS."""
+"""Commands for the car's six joint controllers, and when it has to stop; no ROS."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from car_control.driving.ackermann import CarGeometry, hinge_angles, sharpest_angle, wheel_speeds
 from car_control.settings import bounded, explained
 
-PAGE_WHEEL_GAIN = 8.0  # rad/s of all wheels for each unit of linear.x, the tutorial's number
+PAGE_WHEEL_GAIN = 8.0  # rad/s of all wheels per unit of linear.x, as in the tutorial
 WHEELS = ("left_rear", "right_rear", "left_front", "right_front")
 HINGES = ("left", "right")
 WHEEL_CONTROLLERS = tuple(f"{wheel}_wheel_velocity_controller" for wheel in WHEELS)
@@ -17,18 +17,18 @@ HINGE_CONTROLLERS = tuple(f"{hinge}_steering_hinge_position_controller" for hing
 
 @dataclass(frozen=True)
 class MotorSettings:
-    """The node motor_control's settings; SI units."""
+    """Settings of the node motor_control; SI units."""
 
     namespace: str = explained("of the joint controllers")
-    ackermann: bool = explained("each wheel its own angle and speed; false: the tutorial's law")
-    rate_hz: float = bounded(0, 200, "commands are repeated so often; 0: only answers")
-    timeout: float = bounded(0.02, 10, "s without a command, then the car stops")
+    ackermann: bool = explained("an angle and a speed for each wheel; false: the tutorial's law")
+    rate_hz: float = bounded(0, 200, "Hz at which the last command is repeated; 0: never")
+    timeout: float = bounded(0.02, 10, "s without a command after which the car stops")
     max_speed: float = bounded(0, 20, "m/s")
-    max_steering_angle: float = bounded(0, 1.2, "rad, of the bicycle's front wheel")
+    max_steering_angle: float = bounded(0, 1.2, "rad, front wheel of the bicycle model")
     max_acceleration: float = bounded(0, 100, "m/s^2 when speeding up; 0: no limit")
     wheelbase: float = bounded(0.01, 10, "m from axle to axle")
-    front_track: float = bounded(0.01, 10, "m between the middles of the front wheels")
-    rear_track: float = bounded(0.01, 10, "m between the middles of the rear wheels")
+    front_track: float = bounded(0.01, 10, "m between the centres of the front wheels")
+    rear_track: float = bounded(0.01, 10, "m between the centres of the rear wheels")
     wheel_radius: float = bounded(0.001, 2, "m")
 
     def __post_init__(self) -> None:
@@ -46,25 +46,25 @@ class MotorSettings:
 
 @dataclass(frozen=True)
 class Drive:
-    """Speed in m/s (in the tutorial's law: its own unit) and the bicycle's angle in rad."""
+    """Speed in m/s (in the tutorial's law: its own unit) and steering angle in rad."""
 
     speed: float
     steering_angle: float
 
 
 class Motor:
-    """Keeps the last command and says what to do now; all times in s of one clock."""
+    """Keeps the last command and decides what to do now; all times in s of one clock."""
 
     def __init__(self, settings: MotorSettings):
         self.settings = settings
-        self.emergency = False  # while true the car stands, whatever comes
+        self.emergency = False  # while true the car stands, whatever is commanded
         self._command: Drive | None = None
         self._taken = 0.0
         self._last = Drive(0.0, 0.0)
         self._last_time = 0.0
 
     def take(self, command: Drive, now: float) -> None:
-        """A new command; one that is not finite is a ValueError, and as if it had not come."""
+        """A new command; one that is not finite raises ValueError and is ignored."""
         if not (math.isfinite(command.speed) and math.isfinite(command.steering_angle)):
             raise ValueError(
                 f"speed {command.speed!r}, steering angle {command.steering_angle!r}:"
@@ -73,13 +73,13 @@ class Motor:
         self._command, self._taken = command, now
 
     def forget(self) -> None:
-        """There is no command any more: whoever sent it is gone."""
+        """Drop the command: its sender has ended."""
         self._command = None
 
     def drive(self, now: float) -> Drive:
-        """What to do now. A stop comes at once and keeps the front wheels where they are."""
+        """The command for now. A stop is immediate and keeps the steering angle."""
         if not 0 <= now - self._taken <= self.settings.timeout:
-            self._command = None  # also when the clock was set back: an old command is no command
+            self._command = None  # also if the clock was set back: such a command is outdated
         if self.emergency or self._command is None:
             self._last = Drive(0.0, self._last.steering_angle)
         else:
@@ -91,8 +91,8 @@ class Motor:
         settings = self.settings
         speed = _clamp(command.speed, settings.max_speed)
         if settings.max_acceleration > 0:
-            # From the speed so far, but never from one in the other direction: only speeding up
-            # takes time, slowing down does not.
+            # From the current speed, but not from one in the opposite direction: only speeding up
+            # is limited, slowing down is not.
             so_far = self._last.speed if self._last.speed * speed > 0 else 0.0
             reach = abs(so_far) + settings.max_acceleration * max(period, 0.0)
             speed = _clamp(speed, reach)
@@ -100,7 +100,7 @@ class Motor:
 
 
 def controller_commands(settings: MotorSettings, drive: Drive) -> dict[str, float]:
-    """Controller name -> command: rad/s for the four wheels, rad for the two hinges."""
+    """Commands by controller name: rad/s for the four wheels, rad for the two hinges."""
     if not settings.ackermann:
         wheels = dict.fromkeys(WHEEL_CONTROLLERS, PAGE_WHEEL_GAIN * drive.speed)
         return wheels | dict.fromkeys(HINGE_CONTROLLERS, drive.steering_angle)

@@ -1,4 +1,4 @@
-"""What every node here does alike: read its settings, and leave the car standing when it ends."""
+"""Shared by all nodes: reading settings, and stopping the car when the node ends."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from rospy.client import load_command_line_node_params
 
 from car_control.settings import Settings, SettingsError, load_settings
 
-PATIENCE = 3.0  # s, wall, for the last message and for the master's answer that all is closed
+PATIENCE = 3.0  # s, wall, for the last message and for unregistering from the master
 
 
 def start_node(name: str, anonymous: bool = False) -> None:
-    """init_node without its signal handlers; parameters such as `_kp:=2.5` are for this run only.
+    """init_node without its signal handlers; parameters such as `_kp:=2.5` only hold for this run.
 
-    rospy would write them to the parameter server, where the next run would find them:
-    `read_settings` takes them from the command line itself. Ctrl-C while rospy waits for a master,
-    about which it has said one line, ends the program.
+    rospy would write them to the parameter server, where the next run would find them;
+    `read_settings` reads them from the command line instead. Ctrl-C while rospy waits for a master
+    (it has logged a line about that) ends the program.
     """
     names = [word for word in sys.argv if not load_command_line_node_params([word])]
     try:
@@ -34,8 +34,8 @@ def start_node(name: str, anonymous: bool = False) -> None:
 def read_settings(kind: type[Settings], file_name: str, section: str | None = None) -> Settings:
     """Settings from config/FILE_NAME of this package, or from the file in the parameter ~config.
 
-    The node's other parameters override single keys; those on the command line win. Ends the
-    program with one line if they do not fit.
+    The node's other parameters override single keys; those on the command line take precedence.
+    If a value is invalid, exits with one line.
     """
     given = rospy.get_param("~", {}) | load_command_line_node_params(sys.argv)
     folder = Path(rospkg.RosPack().get_path("car_control"), "config")
@@ -47,11 +47,11 @@ def read_settings(kind: type[Settings], file_name: str, section: str | None = No
 
 
 class Ending:
-    """Ctrl-C, a closed terminal, `rosnode kill`: in each case there is time for a last message.
+    """Leaves time for a last message at Ctrl-C, a closed terminal, or `rosnode kill`.
 
-    Make this right after `start_node`. A signal only sets
-    `asked`; the main thread sees it, sends what is to be sent, and calls `done`. rospy waits for
-    a master that is gone or hangs for ever, in that thread: then the program just ends.
+    Create it right after `start_node`. A signal only sets `asked`; the main thread sees it, sends
+    its last messages, and calls `done`. If the master is gone or hangs, rospy would wait for it
+    forever; then the program just ends.
     """
 
     def __init__(self) -> None:
@@ -68,11 +68,11 @@ class Ending:
         last.start()
 
     def done(self) -> None:
-        """The last message is out: ROS may close the connections."""
+        """The last message was sent: ROS may close the connections."""
         self._done.set()
         rospy.signal_shutdown("ended")
 
     def _shut_down(self) -> None:
-        """Runs on ROS's thread when the master asks; the connections live until it returns."""
+        """Runs in ROS's thread when the master asks; connections stay open until it returns."""
         self.asked.set()
         self._done.wait(2.0)  # s

@@ -1,6 +1,6 @@
-"""A node's settings changed while it runs, over dynamic_reconfigure, without a .cfg file.
+"""Lets dynamic_reconfigure change a node's settings while it runs, without a .cfg file.
 
-Type `rosrun dynamic_reconfigure dynparam list` to see the nodes that can, and
+Type `rosrun dynamic_reconfigure dynparam list` to see the nodes that support it, and
 `rosrun dynamic_reconfigure dynparam set NODE KEY VALUE` to change a number.
 """
 
@@ -20,9 +20,9 @@ Settings = TypeVar("Settings")
 
 
 def serve_settings(settings: Settings, apply: Callable[[Settings], None]) -> Server:
-    """Offer every number and switch; `apply` gets the settings now and after each change.
+    """Offer all numbers and switches; `apply` gets the settings now and after each change.
 
-    `apply` runs on ROS's threads. A value that does not fit is a warning, and stays as it was.
+    `apply` runs in ROS's threads. An invalid value causes a warning and changes nothing.
     """
     current = settings
 
@@ -45,20 +45,20 @@ def serve_settings(settings: Settings, apply: Callable[[Settings], None]) -> Ser
 
 
 class _UnstoredServer(Server):
-    """Leaves the parameter server alone: what it wrote there would override the next run's file.
+    """Does not use the parameter server: values there would override the next run's file.
 
-    dynamic_reconfigure's clients use only the server's topics and its service.
+    dynamic_reconfigure's clients only use the server's topics and its service.
     """
 
     def _copy_from_parameter_server(self) -> None:
-        """The settings were read already; here a whole number would turn into another type."""
+        """Not needed: the settings were already read, and this would change numbers' types."""
 
     def _copy_to_parameter_server(self) -> None:
-        """A change lasts as long as the node, whichever way that ends."""
+        """Not done: a change only lasts as long as the node, however that ends."""
 
 
 def describe(settings: object) -> SimpleNamespace:
-    """What a class generated from a .cfg file would hold for these settings."""
+    """The description that a class generated from a .cfg file would have."""
     parameters = [_parameter(entry) for entry in changeable(type(settings))]
     return SimpleNamespace(
         defaults={p["name"]: getattr(settings, p["name"]) for p in parameters},

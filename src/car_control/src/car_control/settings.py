@@ -1,6 +1,6 @@
-"""A node's settings: a dataclass filled from a YAML file and from what ROS parameters override.
+"""A node's settings: a dataclass filled from a YAML file, overridden by ROS parameters.
 
-The YAML file has every default, once; the dataclass has types, bounds and meanings.
+The YAML file has all defaults; the dataclass has types, bounds and meanings.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ Settings = TypeVar("Settings")
 
 
 class SettingsError(Exception):
-    """One line that names file (or parameters), key, and what is wrong."""
+    """One line that names the file (or parameters), the key, and the error."""
 
 
 def bounded(low: float, high: float, meaning: str) -> Any:
-    """A dataclass field of type float within these bounds; the meaning says its unit."""
+    """A dataclass field of type float within these bounds; the meaning has its unit."""
     return field(metadata={"low": float(low), "high": float(high), "meaning": meaning})
 
 
@@ -36,10 +36,10 @@ def load_settings(
     section: str | None = None,
     given: Mapping[str, object] | None = None,
 ) -> Settings:
-    """An instance of the dataclass `kind` (types float, bool, str) from a file's table.
+    """An instance of the dataclass `kind` (fields of float, bool, str) from a file's table.
 
-    section: the key of the table in the file, None for the whole file. Keys in `given`, the node's
-    own ROS parameters, win. Whatever is wrong is one SettingsError.
+    section: the table's key in the file, None for the whole file. Keys in `given`, the node's own
+    ROS parameters, take precedence. Any error is a SettingsError.
     """
     place = f"{path}: {section}" if section else str(path)
     values = _read_table(Path(path), section, place)
@@ -55,12 +55,12 @@ def load_settings(
             raise SettingsError(f"{place}: missing key '{key}'")
     try:
         return kind(**result)
-    except ValueError as error:  # the dataclass's own check of how its values fit together
+    except ValueError as error:  # the dataclass's own check of its values' combination
         raise SettingsError(f"{place} and the node's parameters: {error}") from error
 
 
 def checked(entry: Field, value: object, where: str) -> object:
-    """The value as this field has it; SettingsError if it cannot."""
+    """The value as this field's type; SettingsError if it is invalid."""
     kind, given = _type_name(entry), reprlib.repr(value)[:80]
     if kind != "float":
         if type(value).__name__ != kind:
@@ -77,12 +77,12 @@ def checked(entry: Field, value: object, where: str) -> object:
 
 
 def changeable(kind: type) -> list[Field]:
-    """Those fields that can change while a node runs: numbers and switches."""
+    """The fields that can change while a node runs: numbers and switches."""
     return [entry for entry in fields(kind) if _type_name(entry) in ("float", "bool")]
 
 
 def _type_name(entry: Field) -> str:
-    """float, bool or str: annotations are texts here, since annotations are not evaluated."""
+    """float, bool or str; annotations are strings here, because they are not evaluated."""
     return entry.type if isinstance(entry.type, str) else entry.type.__name__
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exercise stop_before: stand 1 m before the cylinder.  练习：停在圆柱前 1 米。"""
+"""Exercise stop_before: stop 1 m before the cylinder.  练习：停在圆柱前 1 米。"""
 
 import time
 
@@ -9,14 +9,14 @@ import rospy
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import Image
 
-LEAST_RADIUS = 10  # px; a smaller thing is no target  太小不算目标
-TURN_GAIN = 0.005  # rad/s for each px beside the middle
+LEAST_RADIUS = 10  # px; smaller blobs are ignored  太小不算目标
+TURN_GAIN = 0.005  # rad/s per px from the middle
 SPEED, SEARCH_TURN = 0.2, 0.5  # m/s, rad/s
 STOP_RADIUS = 0  # px; yours: how large does it look from 1 m?  请填：从 1 米处看有多大？
 
 
 def largest_red(picture):
-    """Column and radius (px) of the circle round the largest red thing, or None.  最大的红色物体"""
+    """Column and radius (px) of the circle round the largest red blob, or None.  最大的红色物体"""
     hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV)
     mask = cv2.inRange(hsv, (0, 100, 100), (10, 255, 255))
     contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
@@ -27,12 +27,12 @@ def largest_red(picture):
 
 
 def drive(picture):
-    """Speed (m/s) and turn (rad/s, left positive) after a BGR picture.  看到画面后怎么走"""
+    """Speed (m/s) and turn rate (rad/s, left positive) for a BGR image.  看到画面后怎么走"""
     seen = largest_red(picture)
     if seen is None:
         return 0.0, SEARCH_TURN
     column = seen[0]  # px; seen[1] is the radius  半径在 seen[1]
-    speed = SPEED  # yours: 0 from STOP_RADIUS on  请修改：到 STOP_RADIUS 就停
+    speed = SPEED  # yours: 0 at STOP_RADIUS and above  请修改：到 STOP_RADIUS 就停
     return speed, -TURN_GAIN * (column - picture.shape[1] / 2)
 
 
@@ -49,9 +49,9 @@ class Tracker:
         self.publisher.publish(command)
 
     def stop(self):
-        self.subscriber.unregister()  # or the next image would start the car again
+        self.subscriber.unregister()  # else the next image would start the car again
         self.publisher.publish(Twist())
-        time.sleep(0.2)  # s: sending takes a moment
+        time.sleep(0.2)  # s: sending takes time
 
 
 def main():

@@ -12,10 +12,10 @@ from ai_robot_tracking.scenes.world_file import world_text
 def main() -> int:
     parser = argparse.ArgumentParser(
         prog="make_tracking_world.py",
-        description="Write the world of a red cylinder to follow: its random way is the seed's.")
-    parser.add_argument("kind", choices=KINDS, help="what makes it hard to see")
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of way and things (0)")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="world file (standard output)")
+        description="Write a world with a red cylinder that moves as its seed says.")
+    parser.add_argument("kind", choices=KINDS, help="what makes it hard to track")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of path and objects (0)")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="file (standard output)")
     given = parser.parse_args()
     if given.seed < 0:
         parser.error(f"--seed must be a whole number, 0 or more; got {given.seed}")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Finds things in the pictures of a topic with a YOLO network.  用 YOLO 网络检测图像里的物体。
+"""Detects objects in a topic's images with a YOLO network.  用 YOLO 网络检测图像里的物体。
 
 rosrun ai_robot_tracking object_detector.py image:=/camera/rgb/image_raw [_model:=FILE.onnx]
 """
@@ -27,8 +27,8 @@ TEXTS = ("model", "image", "config")
 KEYS = {*FIELDS, *TEXTS, "class_names", "window"}
 WINDOW = "YOLO Detection"
 COMPLAINT_TIME, SKIP_TIME, QUIET_TIME = 5.0, 5.0, 5.0  # s, wall
-TICK = 0.2  # s, wall: longest wait, so that Ctrl-C works soon
-BUFFER = 2**24  # bytes: with rospy's default, images queue up and get old
+TICK = 0.2  # s, wall: longest wait, so that Ctrl-C works promptly
+BUFFER = 2**24  # bytes: with rospy's default, images queue up and become old
 
 
 class ObjectDetector:
@@ -45,7 +45,7 @@ class ObjectDetector:
         rospy.Subscriber(self.topic, Image, self.pictures.put, queue_size=1, buff_size=BUFFER)
 
     def publish_names(self):
-        """Class n is number n of the list in the parameter that VisionInfo names."""
+        """Class n is entry n of the list in the parameter that VisionInfo names."""
         parameter = rospy.resolve_name("~class_names")
         rospy.set_param(parameter, self.model.names)
         info = VisionInfo(method=f"YOLO {self.model.layout}, {self.model.path.name}",
@@ -65,14 +65,14 @@ class ObjectDetector:
                 if self.settings.max_rate > 0:  # in wall time, to limit the machine's load
                     due = now + 1 / self.settings.max_rate
             elif now - max(heard, due) > QUIET_TIME:
-                rospy.logwarn_throttle(COMPLAINT_TIME, f"no picture on {self.topic} for "
+                rospy.logwarn_throttle(COMPLAINT_TIME, f"no image on {self.topic} for "
                                        f"{now - heard:.0f} s; see: rostopic hz {self.topic}")
             if now - told > SKIP_TIME:
                 self.tell_skipped(now - told)
                 told = now
 
     def next_picture(self, due):
-        """The newest picture, not before `due` (wall s), or None after a TICK or two."""
+        """The newest image, not before `due` (wall s), or None after a TICK or two."""
         rest = due - time.monotonic()
         time.sleep(min(max(rest, 0.0), TICK))
         return self.pictures.take(TICK) if rest <= TICK else None
@@ -82,10 +82,10 @@ class ObjectDetector:
         try:
             rgb = rgb_of(message)
         except PictureError as error:
-            rospy.logwarn_throttle(COMPLAINT_TIME, f"{self.topic}: {error}; left out")
+            rospy.logwarn_throttle(COMPLAINT_TIME, f"{self.topic}: {error}; skipped")
             return
         if (rgb == rgb[0, 0]).all():
-            rospy.logwarn_throttle(COMPLAINT_TIME, f"{self.topic}: the picture is one colour all "
+            rospy.logwarn_throttle(COMPLAINT_TIME, f"{self.topic}: the image is one colour all "
                                    "over; is something in front of the camera?")
             found = nothing()
         else:
@@ -99,11 +99,11 @@ class ObjectDetector:
                 cv2.waitKey(1)  # ms
 
     def tell_skipped(self, span):
-        """Log one line if images came faster, in these s, than they could be processed."""
+        """Log one line if images came faster than they were processed; `span` is in s."""
         taken, skipped = self.pictures.counts()
         if skipped:
-            rospy.loginfo(f"{skipped} of {taken + skipped} pictures skipped in {span:.0f} s: "
-                          f"looked at {taken / span:.1f} a second, always the newest")
+            rospy.loginfo(f"{skipped} of {taken + skipped} images skipped in {span:.0f} s: "
+                          f"processed {taken / span:.1f} a second, always the newest")
 
 
 def main():

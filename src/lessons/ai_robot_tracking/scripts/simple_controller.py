@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives ahead for a while, turns for a while, stops: commands at 10 Hz, no camera.
+"""Drives straight for a while, turns for a while, stops: commands at 10 Hz, no camera.
 
 直行一段时间，再转一段时间，然后停下：10 Hz 发送速度，不用摄像头。
 """
@@ -14,7 +14,7 @@ from ai_robot_tracking.settings import number
 from geometry_msgs.msg import Twist
 
 RATE_HZ = 10
-PATIENCE = 1.0  # s, wall, within which a running robot connects
+PATIENCE = 1.0  # s, wall, in which a running robot connects
 
 
 @dataclass(frozen=True)
@@ -33,11 +33,11 @@ class SimpleController:
         rospy.on_shutdown(self.stop)
 
     def forward(self, speed, duration):
-        """Drive at this speed (m/s) for so long (s)."""
+        """Drive at this speed (m/s) for this time (s)."""
         self.send(speed, 0.0, duration)
 
     def rotate(self, turn, duration):
-        """Turn at this rate (rad/s) for so long (s)."""
+        """Turn at this rate (rad/s) for this time (s)."""
         self.send(0.0, turn, duration)
 
     def send(self, speed, turn, duration):
@@ -45,7 +45,7 @@ class SimpleController:
         message.linear.x, message.angular.z = speed, turn
         begun = rospy.get_time()
         while 0 <= rospy.get_time() - begun < duration and not rospy.is_shutdown():
-            self.publisher.publish(message)  # repeatedly: the robot drops old commands
+            self.publisher.publish(message)  # repeatedly: the robot's commands expire
             try:
                 rate.sleep()
             except rospy.ROSInterruptException:
@@ -53,7 +53,7 @@ class SimpleController:
 
     def stop(self):
         self.publisher.publish(Twist())
-        time.sleep(0.2)  # s, wall: sending takes a moment
+        time.sleep(0.2)  # s, wall: sending takes time
 
 
 def main():
@@ -63,7 +63,7 @@ def main():
     patient_until = time.monotonic() + PATIENCE
     while controller.publisher.get_num_connections() == 0 and not rospy.is_shutdown():
         if time.monotonic() > patient_until:
-            rospy.logwarn_throttle(5, "nobody listens on %s yet",
+            rospy.logwarn_throttle(5, "nothing subscribes to %s yet",
                                    controller.publisher.resolved_name)
         time.sleep(0.05)
     controller.forward(settings.speed, settings.duration)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws pictures, trains the shipped detector with them, and reports how good it is (--help)."""
+"""Renders images, trains the shipped detector on them, and reports its scores (--help)."""
 
 import signal
 import sys

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives up to the largest red thing in sight, by the tutorial's plain P law.
+"""Drives up to the largest red object in sight, with the tutorial's plain P controller.
 
 朝视野里最大的红色物体开过去：教程里的比例控制。
 """

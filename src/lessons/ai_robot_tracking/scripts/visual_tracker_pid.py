@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Follows a red cylinder at a distance by PID; searches where it was last; numbers change live.
+"""Follows a red cylinder at a distance with PID; searches when it is lost; parameters change live.
 
 用 PID 保持距离跟踪红色圆柱；丢失后先朝最后看到的一侧找；参数可在运行时修改。
 """

@@ -98,7 +98,7 @@ class Detector(unittest.TestCase):
 
     def test_only_the_newest_pictures_are_looked_at(self):
         began, last = time.monotonic(), 300
-        while time.monotonic() - began < 2.0 or not self.heard("pictures skipped in"):
+        while time.monotonic() - began < 2.0 or not self.heard("images skipped in"):
             self.assertLess(time.monotonic() - began, LIMIT, "nothing said of what was skipped")
             last += 1
             self.camera.publish(picture(last, patch=(64, 128)))

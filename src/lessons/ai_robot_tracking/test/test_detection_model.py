@@ -84,10 +84,10 @@ def test_a_wrong_yaml_is_named(text, said, tmp_path):
 
 
 @pytest.mark.parametrize("name, said", [
-    ("takes_a_table", "takes [1, 10], not one picture (1, 3, height, width)"),
+    ("takes_a_table", "takes [1, 10], not one image (1, 3, height, width)"),
     ("puts_out_maps", "puts out [1, 3, 64, 64], not YOLO's one table"),
     ("odd_table", "its output has shape (1, 9, 16), and its names are 2"),
-    ("after_nms", "its output has shape (1, 16, 6): boxes that NMS has chosen"),
+    ("after_nms", "its output has shape (1, 16, 6): boxes after NMS"),
     ("too_large", "takes 100000x100000 px, more than 4096"),
 ])
 def test_a_network_of_another_kind_is_refused(name, said):
@@ -157,7 +157,7 @@ def test_encodings_give_the_same_colours():
     ({"encoding": "yuv422"}, "encoding 'yuv422' is not among"),
     ({"encoding": "bgra8"}, "need 20 bytes a row, but step is 15"),
     ({"data": b"123"}, "there are 3 bytes in all"),
-    ({"width": 0}, "a picture of 0x4 px"),
+    ({"width": 0}, "an image of 0x4 px"),
 ])
 def test_a_wrong_picture_is_said(changes, said):
     with pytest.raises(PictureError, match=said):

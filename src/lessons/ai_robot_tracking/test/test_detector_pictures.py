@@ -112,7 +112,7 @@ def test_a_damaged_set_is_drawn_again_and_never_read(tmp_path):
     assert holds(path, 1) and len(read_sets(tmp_path, "train")) == 1
     path.write_bytes(path.read_bytes()[:-40])
     assert not holds(path, 1)
-    with pytest.raises(OSError, match=r"train-1000000\.npz: no set of pictures"):
+    with pytest.raises(OSError, match=r"train-1000000\.npz: not a set of images"):
         read_sets(tmp_path, "train")
 
 

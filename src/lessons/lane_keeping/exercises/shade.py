@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Exercise shade: shade is no line.  练习：阴影不是车道线。"""
+"""Exercise shade: shade is not a lane line.  练习：阴影不是车道线。"""
 
 import cv2
 import cv_bridge
 import rospy
 from sensor_msgs.msg import Image
 
-BLOCK_PX = 61  # side of the square that a pixel is compared with  与周围这么大的方块比较
+BLOCK_PX = 61  # px, side of the square that a pixel is compared with  与周围这么大的方块比较
 SHARE = 0.6  # a line is darker than this share of the mean  线比均值的这个比例还暗
 
 
 def line_mask(grey):
-    """255 where a grey picture (rows, columns) may show a dark line, else 0.  可能是线处为 255"""
-    # Yours: compare each pixel with its own surroundings.  请修改：与各像素自己的周围比较
+    """255 where a grey image (rows, columns) may show a dark line, else 0.  可能是线处为 255"""
+    # Yours: compare each pixel with its surroundings.  请修改：与各像素自己的周围比较
     return cv2.threshold(grey, float(grey.mean()), 255, cv2.THRESH_BINARY_INV)[1]
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Keeps a lane by camera and stops for people at zebra crossings: one command for each image.
+"""Keeps the lane by camera and stops for people at zebra crossings: one command per image.
 
 车道保持：每收到一帧图像发一次速度指令，斑马线前有人则停车。
 """
@@ -24,13 +24,13 @@ from std_msgs.msg import String
 CONFIG = os.path.join(os.path.dirname(os.path.realpath(__file__)), "../config/lane_keeping.yaml")
 WINDOW = "lane_keeping"
 CHECK_PERIOD = 0.1  # s
-REPEAT = 5  # s between two warnings of a kind
+REPEAT = 5  # s between two warnings of the same kind
 WARNINGS = {
-    lane_keeper.LOST: "lane lost, driving on the last one  车道线丢失，沿用上一帧",
+    lane_keeper.LOST: "lane lost, following the last one seen  车道线丢失，沿用上一帧",
     lane_keeper.SEARCHING: "lane lost, turning to where it was  车道线丢失，原地转向寻找",
     lane_keeper.STOPPED: "no lane in sight, standing still  看不到车道线，停车",
-    lane_keeper.BLANK: "the picture on {topic} is blank, standing still  图像是空白的，停车",
-    lane_keeper.FROZEN: "the picture on {topic} is frozen, standing still  图像不再变化，停车",
+    lane_keeper.BLANK: "the image on {topic} is blank, standing still  图像是空白的，停车",
+    lane_keeper.FROZEN: "the image on {topic} is frozen, standing still  图像不再变化，停车",
 }
 
 
@@ -40,7 +40,7 @@ class LaneKeeping:
     def __init__(self, settings, window):
         self.settings, self.bridge = settings, cv_bridge.CvBridge()
         self.keeper = lane_keeper.LaneKeeper(settings)
-        self.lock = threading.Lock()  # images and the timer are on different threads
+        self.lock = threading.Lock()  # images and the timer run in different threads
         self.arrival, self.state = rospy.get_time(), None
         self.window = window
         if window:
@@ -56,7 +56,7 @@ class LaneKeeping:
     def take_image(self, msg):
         with self.lock:
             if rospy.is_shutdown():
-                return  # it waited for the lock while stop() held it: no command after the last one
+                return  # stop() held the lock meanwhile: no command after the final one
             self.arrival = rospy.get_time()
             mistake = mistake_in(msg.encoding, msg.width, msg.height, msg.step, len(msg.data))
             if mistake:
@@ -72,7 +72,7 @@ class LaneKeeping:
         watched = self.pictures.get_num_connections() > 0
         if not (watched or self.window):
             return
-        picture = annotate(image.copy(), decision)  # the keeper compares the next one with it
+        picture = annotate(image.copy(), decision)  # the keeper still needs the original
         if watched:
             self.pictures.publish(self.bridge.cv2_to_imgmsg(picture, "bgr8", header))
         if self.window:
@@ -80,7 +80,7 @@ class LaneKeeping:
             cv2.waitKey(1)  # ms
 
     def say(self, state, warning):
-        """Publish the state when it changes; log a warning as often as REPEAT allows."""
+        """Publish the state when it changes; log the warning, at most every REPEAT s."""
         if state != self.state:
             self.state = state
             self.states.publish(state)
@@ -100,7 +100,7 @@ class LaneKeeping:
             if late < 0:
                 self.arrival = rospy.get_time()  # time was reset
             elif late > self.settings.image_timeout:
-                self.distrust("no image", "no picture, standing still  没有图像，停车")
+                self.distrust("no image", "no image, standing still  没有图像，停车")
 
     def send(self, speed, turn):
         command = Twist()
@@ -108,17 +108,17 @@ class LaneKeeping:
         self.commands.publish(command)
 
     def stop(self):
-        """Stop before leaving: the last command stands until the next one.  退出前停车。"""
+        """Stop before exiting: the car keeps following the last command.  退出前停车。"""
         self.timer.shutdown()
-        self.images.unregister()  # or the next image would start the robot again
+        self.images.unregister()  # else the next image would start the car again
         with self.lock:
-            for _ in range(3):  # sending takes a moment
+            for _ in range(3):  # sending takes time
                 self.send(0.0, 0.0)
-                time.sleep(0.1)  # s, on the wall: simulated time may stand still
+                time.sleep(0.1)  # s of wall time: simulated time may be paused
 
 
 def read_parameters(given):
-    """Settings, and whether to show a window, from the node's parameters; or SettingsError."""
+    """Settings, and whether to show a window, from the node's parameters; SettingsError."""
     numbers = dict(given)
     path, window = numbers.pop("config", "") or CONFIG, numbers.pop("window", True)
     if not isinstance(path, str):
@@ -133,10 +133,10 @@ def main():
     try:
         rospy.init_node("lane_keeping")
     except rospy.ROSInitException:
-        sys.exit(1)  # Ctrl-C while it looked for the master, which has been said
+        sys.exit(1)  # Ctrl-C while waiting for the master, about which rospy has logged a line
     given = rospy.get_param("~", {})
     for key in load_command_line_node_params(sys.argv):
-        rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
+        rospy.delete_param(f"~{key}")  # _key:=value must not affect the next run
     try:
         if not isinstance(given, dict):
             raise SettingsError(f"rosparam delete {rospy.get_name()}: it is {given!r}, no table")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The tutorial's first node: it shows the camera's image and counts; it does not look yet.
+"""The tutorial's first node: shows the camera's images and counts them, but does not use them.
 
 教程的第一个节点：显示图像并计数，直行 100 帧，左转 60 帧，如此反复
 """
@@ -36,9 +36,9 @@ class LearningNode:
         self.velocity_publisher.publish(command)
 
     def stop(self):
-        self.image_subscription.unregister()  # or the next image would start the car again
+        self.image_subscription.unregister()  # else the next image would start the car again
         self.velocity_publisher.publish(Twist())
-        time.sleep(0.2)  # s, wall: sending takes a moment
+        time.sleep(0.2)  # s, wall: sending takes time
 
 
 def main():

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Walks people over the zebra crossings: sends each a command with every camera image.
+"""Moves people over the zebra crossings: sends each a command with every camera image.
 
-config/crossings.yaml gives the crossings and how they are used. People look before they step
-out, and do not step out close in front of a moving car.
+config/crossings.yaml describes the crossings. People look before they step out, and do not step
+out close in front of a moving car.
 按 config/crossings.yaml 让行人过斑马线；行人会先看车，车近时不上路
 """
 
@@ -22,15 +22,15 @@ from nav_msgs.msg import Odometry
 from rospy.client import load_command_line_node_params
 from sensor_msgs.msg import CameraInfo
 
-LATEST = 0.022  # s: odometry comes at 50 Hz; an older one is not the last before an image
+LATEST = 0.022  # s: odometry comes at 50 Hz, so one older than this is not the last before an image
 PATIENCE = 0.1  # s, wall, to wait for it
 MEASURES, PLACE = ("length", "half_width", "kerb", "far"), ("x", "y", "heading")
 PARAMETERS = ("crossings", "near", "seed")
-MOST = 1e6  # of any number
+MOST = 1e6  # largest absolute value of any number
 
 
 class Place:
-    """The last odometry of one model, position and speed, with a wait for a given time."""
+    """The last odometry of one model, position and speed; can wait for a given time."""
 
     def __init__(self, topic):
         self._news = threading.Condition()
@@ -38,7 +38,7 @@ class Place:
         rospy.Subscriber(topic, Odometry, self._take, queue_size=1, tcp_nodelay=True)
 
     def at(self, time):
-        """x, y, speed at a simulated time (s), or the newest ones; or None."""
+        """x, y, speed at a simulated time (s), else the newest; None if there are none."""
         with self._news:
             self._news.wait_for(lambda: self._time() > time - LATEST, PATIENCE)
             if self._message is None:
@@ -60,7 +60,7 @@ class Pedestrians:
 
     def __init__(self, crossings, habits, seed):
         self._car, self._people = Place("ground_truth"), []
-        # First: whoever waits for our publishers before time begins thus also waits for this.
+        # First: a program that waits for our publishers before starting time also waits for this.
         rospy.Subscriber("camera_info", CameraInfo, self._walk, queue_size=1, tcp_nodelay=True)
         for number, crossing in enumerate(crossings, start=1):
             walker = Walker(crossing, habits, np.random.default_rng([seed, number]))
@@ -73,12 +73,12 @@ class Pedestrians:
         for walker, where, command in self._people:
             place, twist = where.at(now), Twist()
             if place is not None:
-                twist.linear.x = walker.step(now, place[:2], car)  # each looks to the lane's left
+                twist.linear.x = walker.step(now, place[:2], car)  # each faces the lane's left
             command.publish(twist)
 
 
 def read_crossings(path):
-    """The crossings of a YAML file; exits with one line if it is none."""
+    """The crossings of a YAML file; exits with one line if the file is invalid."""
     try:
         values = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
         zebras = values.pop("zebras", ()) if isinstance(values, dict) else ()
@@ -90,7 +90,7 @@ def read_crossings(path):
 
 
 def numbers(table, keys, where):
-    """The values of these keys as floats; ValueError if it has others, or one is no number."""
+    """The values of these keys as floats; ValueError if keys differ or one is not a number."""
     wrong = sorted(set(table if isinstance(table, dict) else ()) ^ set(keys), key=str)
     if wrong:
         raise ValueError(f"{where}key {wrong[0]!r:.80} is missing or unknown")
@@ -102,7 +102,7 @@ def numbers(table, keys, where):
 
 
 def read_parameters(given):
-    """The file of the crossings, `near` (m) and the seed; exits with one line if one is wrong."""
+    """The crossings' file, `near` (m) and the seed; exits with one line if one is invalid."""
     for key in given:
         if key not in PARAMETERS:
             raise SystemExit(f"pedestrians: unknown parameter ~{key}; known: "
@@ -121,7 +121,7 @@ def main():
     rospy.init_node("pedestrians")
     given = rospy.get_param("~", {})
     for key in load_command_line_node_params(sys.argv):
-        rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
+        rospy.delete_param(f"~{key}")  # _key:=value must not affect the next run
     path, near, seed = read_parameters(given)
     Pedestrians(read_crossings(path), Habits(near=near), seed)
     rospy.spin()

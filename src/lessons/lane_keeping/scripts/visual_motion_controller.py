@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The tutorial's lane keeper: mask, sliding windows, two fits, and a turn towards their middle.
+"""The tutorial's lane keeper: mask, sliding windows, two fits, steering towards their middle.
 
 教程的车道保持节点：二值化、滑动窗口、二次拟合，朝两条线的中间转向。改进在 lane_keeping_node.py
 """
@@ -25,7 +25,7 @@ PAGE = rospkg.RosPack().get_path("lane_keeping") + "/config/page.yaml"
 class VisualMotionController:
     def __init__(self):
         self.settings = load_settings(PAGE)
-        self.debug_mode = rospy.get_param("~debug_mode", False)  # look, but do not drive
+        self.debug_mode = rospy.get_param("~debug_mode", False)  # do not drive
         self.bridge = cv_bridge.CvBridge()
         self.velocity_publisher = rospy.Publisher("/cmd_vel", Twist, queue_size=10)
         self.image_subscription = rospy.Subscriber(
@@ -36,7 +36,7 @@ class VisualMotionController:
         mask = line_mask(image, self.settings)
         view = road_view(self.settings, msg.width, msg.height)
         plan = sliding_windows.plan(mask, view, self.settings)
-        command = Twist()  # without a lane: stand
+        command = Twist()  # zero, for no lane
         if self.debug_mode:
             rospy.loginfo_throttle(2, "debug mode: standing  调试模式：运动已暂停")
         elif plan is not None:
@@ -49,9 +49,9 @@ class VisualMotionController:
         cv2.waitKey(1)  # ms
 
     def stop(self):
-        self.image_subscription.unregister()  # or the next image would start the car again
+        self.image_subscription.unregister()  # else the next image would start the car again
         self.velocity_publisher.publish(Twist())
-        time.sleep(0.2)  # s, wall: sending takes a moment
+        time.sleep(0.2)  # s, wall: sending takes time
 
 
 def main():

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes lane_keeping's world and its ground from track, crossings and scenery files."""
+"""Writes lane_keeping's world and ground from the track, crossings and scenery files."""
 
 import argparse
 import sys
@@ -19,7 +19,7 @@ def main() -> int:
     parser.add_argument("--track", type=Path, help="YAML file (tracks/lane.yaml of evaluation)")
     parser.add_argument("--crossings", type=Path, help="YAML file (config/crossings.yaml)")
     parser.add_argument("--scenery", type=Path, help="YAML file (config/lane_scenery.yaml)")
-    parser.add_argument("--no-shade", dest="shade", action="store_false", help="paint no shade")
+    parser.add_argument("--no-shade", dest="shade", action="store_false", help="no shade")
     parser.add_argument("--out", type=Path, metavar="DIR",
                         help="where worlds/ and models/ go (lane_keeping)")
     options = parser.parse_args()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Offer an action: add up slowly, and say how far it is.  动作服务端：慢慢求和并反馈进度。"""
+"""An action server: adds up slowly, and reports its progress.  动作服务端：慢慢求和并反馈进度。"""
 
 import actionlib
 import rospy
@@ -16,7 +16,7 @@ class AddInts:
         rospy.loginfo("ready for addInts")
 
     def execute(self, goal):
-        """Runs in a thread of its own, for one goal at a time.  每次只执行一个目标。"""
+        """Runs in its own thread, for one goal at a time.  每次只执行一个目标。"""
         total = 0
         rate = rospy.Rate(RATE_HZ)
         for number in range(1, goal.num + 1):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Send a goal, watch its progress, wait for the result.  动作客户端：发送目标，查看进度和结果。"""
+"""An action client: send a goal, print the progress.  动作客户端：发送目标，查看进度和结果。"""
 
 import actionlib
 import rospy

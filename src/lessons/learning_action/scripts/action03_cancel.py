@@ -17,7 +17,7 @@ def main():
     if not client.wait_for_result(rospy.Duration(PATIENCE)):
         rospy.loginfo("not done after %.0f s: cancel", PATIENCE)
         client.cancel_goal()
-        client.wait_for_result()  # the server has to agree  等服务端确认
+        client.wait_for_result()  # until the server confirms  等服务端确认
     rospy.loginfo("%s, result %d", GoalStatus.to_string(client.get_state()),
                   client.get_result().result)
 

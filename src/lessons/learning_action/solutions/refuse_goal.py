@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exercise refuse_goal: no sum of fewer than one number.  练习：拒绝小于 1 的目标。"""
+"""Exercise refuse_goal: abort goals below 1.  练习：拒绝小于 1 的目标。"""
 
 import actionlib
 import rospy
@@ -15,7 +15,7 @@ class AddInts:
         self.server.start()
 
     def execute(self, goal):
-        """Runs in a thread of its own, for one goal at a time.  每次只执行一个目标。"""
+        """Runs in its own thread, for one goal at a time.  每次只执行一个目标。"""
         if goal.num < 1:
             self.server.set_aborted(AddIntsResult(), "num must be 1 or more")
             return

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exercise stop_at_end: who ends must stop the turtle.  练习：退出前让海龟停下。"""
+"""Exercise stop_at_end: stop the turtle on exit.  练习：退出前让海龟停下。"""
 
 import time
 
@@ -14,7 +14,7 @@ SENDING = 0.2  # s: sending takes a moment  发送需要一点时间
 class Driver:
     def __init__(self):
         self.publisher = rospy.Publisher("/turtle1/cmd_vel", Twist, queue_size=1)
-        # Yours: have rospy call stop at the end.  请补充：让 rospy 在退出时调用 stop
+        # Yours: let rospy call stop on shutdown.  请补充：让 rospy 在退出时调用 stop
 
     def drive(self):
         command = Twist()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A message for those who come later: latch.  晚到的订阅者也能收到最后一条消息。"""
+"""latch: later subscribers get the last message too.  晚到的订阅者也能收到最后一条消息。"""
 
 import rospy
 from std_msgs.msg import String

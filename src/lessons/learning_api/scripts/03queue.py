@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""A slow subscriber: what queue_size keeps, and what it drops.  订阅者太慢时，队列丢掉旧消息。"""
+"""queue_size with a slow subscriber: which messages are dropped.  订阅者太慢时，队列丢掉旧消息。"""
 
 import rospy
 from std_msgs.msg import Int32
 
-SLOW = 0.3  # s that a message takes
+SLOW = 0.3  # s to process a message
 
 
 def number_callback(message):
@@ -17,9 +17,9 @@ def main():
     size = rospy.get_param("~size", 1)
     rospy.Subscriber("number", Int32, number_callback, queue_size=size)
     publisher = rospy.Publisher("number", Int32, queue_size=100)
-    while publisher.get_num_connections() == 0:  # a message before that is lost  否则会丢
+    while publisher.get_num_connections() == 0:  # earlier messages would be lost  否则会丢
         rospy.sleep(0.01)
-    for number in range(10):  # ten a second, three times too many  发得太快
+    for number in range(10):  # ten per second, three times too fast  发得太快
         publisher.publish(number)
         rospy.sleep(0.1)
     rospy.sleep(SLOW * (size + 1))

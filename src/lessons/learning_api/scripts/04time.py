@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Moments and spans: Time and Duration.  时刻与时间段。"""
+"""Points in time and time spans: Time and Duration.  时刻与时间段。"""
 
 import rospy
 
 
 def main():
     rospy.init_node("time")
-    begin = rospy.Time.now()  # needs init_node; simulated time with use_sim_time  需先初始化
+    begin = rospy.Time.now()  # needs init_node; simulated time if use_sim_time is set  需先初始化
     rospy.sleep(rospy.Duration(0.5))
     span = rospy.Time.now() - begin  # Time - Time: Duration  相减得到时间段
     rospy.loginfo("slept %.1f s", span.to_sec())

@@ -11,7 +11,7 @@ def main():
     rate = rospy.Rate(RATE_HZ)
     begin = rospy.Time.now()
     for _ in range(RATE_HZ):
-        rospy.sleep(0.1)  # work; Rate sleeps only for what is left of 0.2 s  只睡剩下的时间
+        rospy.sleep(0.1)  # work; Rate sleeps only for the rest of the 0.2 s  只睡剩下的时间
         rate.sleep()
     rospy.loginfo("%d rounds in %.1f s", RATE_HZ, (rospy.Time.now() - begin).to_sec())
 

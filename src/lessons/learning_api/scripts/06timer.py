@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""A function that ROS calls again and again: Timer.  定时器。"""
+"""Timer: ROS calls a function periodically.  定时器。"""
 
 import rospy
 
 
 def tick(event):
-    """Runs in a thread of its own.  在单独的线程中执行。"""
+    """Runs in its own thread.  在单独的线程中执行。"""
     late = event.current_real - event.current_expected
     rospy.loginfo("tick, %.0f ms late", late.to_sec() * 1e3)
 

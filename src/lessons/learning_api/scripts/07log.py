@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Five levels of log lines.  五个日志级别。"""
+"""The five log levels.  五个日志级别。"""
 
 import rospy
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""End in good order: is_shutdown, signal_shutdown, on_shutdown.  节点的正常退出。"""
+"""Clean shutdown: is_shutdown, signal_shutdown, on_shutdown.  节点的正常退出。"""
 
 import rospy
 
@@ -10,7 +10,7 @@ def say_goodbye():
 
 def main():
     rospy.init_node("shutdown")
-    rospy.on_shutdown(say_goodbye)  # called at the end, at Ctrl-C too  退出时调用
+    rospy.on_shutdown(say_goodbye)  # called at shutdown, also after Ctrl-C  退出时调用
     count = 0
     rate = rospy.Rate(10)
     while not rospy.is_shutdown():

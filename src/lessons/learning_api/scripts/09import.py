@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Use a module that lies beside this file.  导入同目录下的模块。"""
+"""Import a module from the same folder.  导入同目录下的模块。"""
 
 import rospy
 from circle import area  # circle.py; Python looks in this script's folder first  先找本脚本所在目录

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Global, relative and private names, and what the command line makes of them.  三种名称。"""
+"""Global, relative and private names, and remapping on the command line.  三种名称。"""
 
 import rospy
 from std_msgs.msg import String

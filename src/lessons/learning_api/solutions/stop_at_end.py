@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exercise stop_at_end: who ends must stop the turtle.  练习：退出前让海龟停下。"""
+"""Exercise stop_at_end: stop the turtle on exit.  练习：退出前让海龟停下。"""
 
 import time
 

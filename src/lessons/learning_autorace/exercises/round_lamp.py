@@ -1,25 +1,25 @@
 #!/usr/bin/env python3
-"""Exercise round_lamp: which lamp is lit, and what is no lamp.  练习：哪盏灯亮着，什么不是灯。"""
+"""Exercise round_lamp: which lamp is lit, and what is none.  练习：哪盏灯亮着，什么不是灯。"""
 
 import cv2
 import cv_bridge
 import rospy
 from sensor_msgs.msg import Image
 
-# Hue 0..180 of a lit lamp, from and to.  亮着的灯的色相
+# Hue range (0..180) of a lit lamp.  亮着的灯的色相
 HUES = {"red": (0, 6), "yellow": (25, 35), "green": (50, 70)}
 LEAST = 200, 200  # saturation, value  饱和度、亮度
 LEAST_AREA = 60  # px
-ROUND = 0.6, 1.6  # width by height  宽高比
+ROUND = 0.6, 1.6  # width / height  宽高比
 
 
 def is_lamp(width, height, area):
-    """Whether a spot so wide and high (px), of so many pixels, can be a lamp.  可能是灯吗"""
-    return area > LEAST_AREA  # yours: and it is round  请修改：而且是圆的
+    """Whether a blob of this width, height (px) and area (pixels) can be a lamp.  可能是灯吗"""
+    return area > LEAST_AREA  # yours: it must also be round  请修改：而且是圆的
 
 
 def lit_lamp(picture):
-    """red, yellow or green: the largest lamp of a BGR picture; None: there is none.  最大的灯"""
+    """The largest lit lamp in a BGR image: red, yellow, green, or None.  最大的灯"""
     hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV)
     found = {}
     for colour, (low, high) in HUES.items():

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lesson 1: the floor seen from above.  第一课：把相机图像变成俯视图。"""
+"""Lesson 1: the ground seen from above.  第一课：把相机图像变成俯视图。"""
 
 import cv2
 import cv_bridge
@@ -19,7 +19,7 @@ class Projector:
         rospy.Subscriber("camera/image", Image, self.take, queue_size=1, buff_size=2**24)
 
     def take(self, message):
-        """Publish the piece of floor: framed in the picture, from above, and in full brightness."""
+        """Publish the area of ground: outlined in the image, from above, and with full contrast."""
         image = self.bridge.imgmsg_to_cv2(message, desired_encoding="bgr8").copy()
         if self.maps is None:
             self.maps = floor_maps(image.shape[1], image.shape[0], self.calibration)
@@ -32,10 +32,10 @@ class Projector:
             topic.publish(self.bridge.cv2_to_imgmsg(picture, "bgr8", header=message.header))
 
     def say_width(self, view):
-        """The check: how wide is the lane in the picture?  检查车道宽度。"""
+        """A check: how wide is the lane in the view?  检查车道宽度。"""
         lane = find_lane(view, 0.0, self.calibration)
         if lane.yellow is None or lane.white is None:
-            rospy.logwarn_throttle(2, "no lane before the robot  前方没有车道")
+            rospy.logwarn_throttle(2, "no lane ahead of the robot  前方没有车道")
         else:
             width, wanted = lane.yellow - lane.white, self.calibration.lane_width
             rospy.loginfo_throttle(2, f"the lane is {width:.3f} m wide, should be {wanted:.3f} m")

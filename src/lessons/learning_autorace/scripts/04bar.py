@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lesson 4: wait before the crossing's bar until it opens.  第四课：栏杆放下时等待。"""
+"""Lesson 4: wait at the level crossing until its bar opens.  第四课：栏杆放下时等待。"""
 
 from learning_autorace.bar import Bar
 from learning_autorace.course import Course

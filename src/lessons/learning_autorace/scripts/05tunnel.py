@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lesson 5: through the tunnel by laser.  第五课：用激光雷达穿过隧道。"""
+"""Lesson 5: drive through the tunnel by laser.  第五课：用激光雷达穿过隧道。"""
 
 from learning_autorace.course import Course
 from learning_autorace.node import run

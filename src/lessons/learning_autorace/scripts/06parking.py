@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lesson 6: park in the free bay, and go on.  第六课：停进空车位，再开出来。"""
+"""Lesson 6: park in the free bay, and drive on.  第六课：停进空车位，再开出来。"""
 
 from learning_autorace.course import Course
 from learning_autorace.node import run

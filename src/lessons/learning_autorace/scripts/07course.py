@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Lesson 7: one mission after the other, from the start to the finish.  第七课：跑完全程。"""
+"""Lesson 7: all missions, from start to finish.  第七课：跑完全程。"""
 
 from learning_autorace.bar import Bar
 from learning_autorace.course import Course, Finish

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Works the lights and the bar and parks a robot, as the race's own mission node does.
+"""Controls the lights and the bar, and parks a robot, like the race's own mission node.
 
 模仿比赛的任务节点：控制红绿灯和栏杆，停放一辆车。
 """
@@ -17,10 +17,10 @@ from geometry_msgs.msg import Pose
 
 ROBOT = "autorace"
 BAR = -1.72, 0.56  # m
-NEAR_BAR = 0.8  # m: from then on the robot has to wait  从这里开始计时
-OPEN_AT_ONCE = 0.2  # of all seeds  不用等的比例
-BAYS = {"east": (0.755, 0.8), "west": (0.205, 0.8)}  # m, middles of the bays  车位中心
-TICK = 0.2  # s, between two looks at the time
+NEAR_BAR = 0.8  # m: within this the wait starts  从这里开始计时
+OPEN_AT_ONCE = 0.2  # share of the seeds  不用等的比例
+BAYS = {"east": (0.755, 0.8), "west": (0.205, 0.8)}  # m, centres of the bays  车位中心
+TICK = 0.2  # s, between two updates
 YELLOW = 2.0  # s
 
 
@@ -31,7 +31,7 @@ class Mission:
         draw = random.Random(seed)
         red, green = draw.uniform(4.0, 8.0), draw.uniform(8.0, 12.0)  # s
         self.light = {"red": red, "green": green, "yellow": YELLOW}
-        self.begin = draw.uniform(-YELLOW, red)  # s: it is yellow or red at first
+        self.begin = draw.uniform(-YELLOW, red)  # s: first it is yellow or red
         self.bar_wait = draw.uniform(4.0, 12.0) if draw.random() > OPEN_AT_ONCE else 0.0  # s
         self.bar_opens = math.inf  # s
         self.bay = draw.choice(sorted(BAYS))
@@ -42,7 +42,7 @@ class Mission:
         rospy.Subscriber("/gazebo/model_states", ModelStates, self.watch, queue_size=1)
 
     def park(self):
-        """Put a robot into one of the bays.  在一个车位停一辆车。"""
+        """Park a robot in one of the bays.  在一个车位停一辆车。"""
         text = self.text("turtlebot3_burger").replace("<static>0", "<static>1")
         pose = Pose()
         pose.position.x, pose.position.y = BAYS[self.bay]
@@ -50,7 +50,7 @@ class Mission:
         self.spawn("turtlebot3_burger", text, "", pose, "world")
 
     def show(self, kind, name):
-        """Put up a model instead of the last one of its kind.  换一个模型。"""
+        """Replace the last model of this kind by another.  换一个模型。"""
         if self.shown.get(kind) == name:
             return
         if kind in self.shown:
@@ -59,7 +59,7 @@ class Mission:
         self.spawn(name, self.text(name), "", Pose(), "world")
 
     def watch(self, states):
-        """The bar opens a while after the robot came.  机器人靠近一会儿后栏杆抬起。"""
+        """Open the bar a while after the robot's arrival.  机器人靠近一会儿后栏杆抬起。"""
         if ROBOT in states.name and math.isinf(self.bar_opens):
             place = states.pose[states.name.index(ROBOT)].position
             if math.dist((place.x, place.y), BAR) < NEAR_BAR:
@@ -69,7 +69,7 @@ class Mission:
         return (self.models / name / "model.sdf").read_text(encoding="utf-8")
 
     def work(self, _event=None):
-        """Show the lamp and the bar of this moment.  显示现在的灯和栏杆。"""
+        """Show the current lamp and bar.  显示现在的灯和栏杆。"""
         now = rospy.get_time()
         is_open = self.bar_wait == 0.0 or now >= self.bar_opens
         try:
@@ -81,7 +81,7 @@ class Mission:
 
 
 def phase(lengths, now):
-    """Which of the phases, s long, it is at this time, s.  现在是哪一段。"""
+    """The index of the phase at this time, s; `lengths` are in s.  现在是哪一段。"""
     now %= sum(lengths.values())
     for name, length in lengths.items():
         if now < length:

@@ -5,10 +5,10 @@ import rosbag
 import rospy
 from std_msgs.msg import String
 
-FILE = "test.bag"  # in the folder you are in; it is overwritten  写在当前目录，会覆盖
+FILE = "test.bag"  # in the current folder; overwritten if it exists  写在当前目录，会覆盖
 TOPIC = "chatter"
 COUNT, PERIOD = 10, 0.5  # messages; s
-BEGIN = 1.0  # s; a bag takes no time 0  时间不能为 0
+BEGIN = 1.0  # s; a bag does not accept time 0  时间不能为 0
 
 
 def main():

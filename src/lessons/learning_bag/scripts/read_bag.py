@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Read the messages of test.bag back.  读出 test.bag 里的消息。"""
+"""Read the messages in test.bag.  读出 test.bag 里的消息。"""
 
 import sys
 
@@ -14,7 +14,7 @@ def main():
     rospy.init_node("read_bag")
     try:
         with rosbag.Bag(FILE) as bag:
-            # The time is when the message was written.  时间是写入的时刻
+            # The time at which the message was written.  时间是写入的时刻
             for topic, message, time in bag.read_messages(topics=[TOPIC]):
                 rospy.loginfo("%.3f %s: %s", time.to_sec(), topic, message.data)
     except (OSError, rosbag.ROSBagException) as error:

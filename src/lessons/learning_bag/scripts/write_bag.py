@@ -5,13 +5,13 @@ import rosbag
 import rospy
 from std_msgs.msg import String
 
-FILE = "test.bag"  # in the folder you are in; it is overwritten  写在当前目录，会覆盖
+FILE = "test.bag"  # in the current folder; overwritten if it exists  写在当前目录，会覆盖
 TOPIC = "chatter"
 
 
 def main():
     rospy.init_node("write_bag")
-    # `with` closes the file; without its index a bag cannot be read.  不关闭则没有索引
+    # `with` closes the file, which writes the index that reading needs.  不关闭则没有索引
     with rosbag.Bag(FILE, "w") as bag:
         for count in range(3):
             bag.write(TOPIC, String(data=f"hello {count}"))

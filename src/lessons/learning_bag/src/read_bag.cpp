@@ -1,4 +1,4 @@
-// Read the messages of test.bag back.  读出 test.bag 里的消息。
+// Read the messages in test.bag.  读出 test.bag 里的消息。
 #include <ros/ros.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -16,9 +16,9 @@ int main(int argc, char** argv) {
   try {
     rosbag::Bag bag(FILE_NAME, rosbag::bagmode::Read);
     for (const rosbag::MessageInstance& found : rosbag::View(bag, rosbag::TopicQuery(TOPIC))) {
-      // Empty where the message is of another type.  类型不符时为空指针
+      // Null if the message has another type.  类型不符时为空指针
       std_msgs::String::ConstPtr message = found.instantiate<std_msgs::String>();
-      // The time is when the message was written.  时间是写入的时刻
+      // The time at which the message was written.  时间是写入的时刻
       if (message) ROS_INFO("%.3f %s: %s", found.getTime().toSec(), TOPIC.c_str(), message->data.c_str());
     }
   } catch (const rosbag::BagException& error) {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-const std::string FILE_NAME = "test.bag";  // in the folder you are in  写在当前目录，会覆盖
+const std::string FILE_NAME = "test.bag";  // in the current folder; overwritten  写在当前目录，会覆盖
 const std::string TOPIC = "chatter";
 
 int main(int argc, char** argv) {

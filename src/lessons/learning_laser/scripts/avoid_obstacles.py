@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives through obstacles by the laser alone: to where a strip as wide as the robot is free.
+"""Drives between obstacles by laser alone, in the direction of the freest robot-wide strip.
 
 只靠激光雷达避障：朝着与机器人同宽的通道最畅通的方向行驶
 """
@@ -12,17 +12,17 @@ import rospy
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import LaserScan
 
-HALF_WIDTH = 0.27  # m: the waffle's 0.153, and room beside it
-REACH = 2.5  # m: what is farther does not count
+HALF_WIDTH = 0.27  # m: the waffle's 0.153, plus room beside it
+REACH = 2.5  # m: farther points do not count
 HEADINGS = np.radians(np.arange(-90, 91, 5))  # rad, left positive
 SPEED, TURN = 0.22, 1.0  # m/s, rad/s, at most
-TURN_GAIN = 1.5  # rad/s for each rad
-STOP, SLOW = 0.35, 0.5  # m: no farther ahead than STOP; slower from STOP + SLOW on
-DEAD_END = 0.5  # m: less is worth nothing, then it turns to wherever it is freest
+TURN_GAIN = 1.5  # rad/s per rad
+STOP, SLOW = 0.35, 0.5  # m: keeps STOP free ahead; slows down from STOP + SLOW on
+DEAD_END = 0.5  # m: if all directions are worth less, it turns to the freest one
 
 
 def free_lengths(angles, ranges):
-    """How far (m, at most REACH) a strip is free in each of HEADINGS.
+    """Free length (m, at most REACH) of a strip in each of HEADINGS.
 
     angles, ranges: (N,) rad and m of a scan; inf where it saw nothing.
     """
@@ -33,7 +33,7 @@ def free_lengths(angles, ranges):
 
 
 def command(angles, ranges):
-    """Speed (m/s) and turn (rad/s, left positive) after a scan."""
+    """Speed (m/s) and turn rate (rad/s, left positive) for a scan."""
     free = free_lengths(angles, ranges)
     worth = free * np.cos(HEADINGS)
     best = np.argmax(worth if worth.max() >= DEAD_END else free)
@@ -57,9 +57,9 @@ class AvoidObstacles:
         self.publisher.publish(twist)
 
     def stop(self):
-        self.subscriber.unregister()  # or the next scan would start the robot again
+        self.subscriber.unregister()  # else the next scan would start the robot again
         self.publisher.publish(Twist())
-        time.sleep(0.2)  # s, wall: sending takes a moment
+        time.sleep(0.2)  # s, wall: sending takes time
 
 
 def main():

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws what avoid_obstacles.py makes of a scan: images/strips.png."""
+"""Draws how avoid_obstacles.py evaluates a scan: images/strips.png."""
 
 import importlib
 from pathlib import Path
@@ -9,8 +9,8 @@ import numpy as np
 from learning_laser import hall
 
 lesson = importlib.import_module("avoid_obstacles")  # beside this script
-PLACE = 0.9, 0.1, 0.0  # x, y, m; yaw, rad: of the axle in hall 0
-SCALE, LEFT, TOP = 160, -0.5, 1.6  # px a metre; m, of the picture's upper left corner
+PLACE = 0.9, 0.1, 0.0  # the axle's x, y, m, and yaw, rad, in hall 0
+SCALE, LEFT, TOP = 160, -0.5, 1.6  # px per metre; m, the image's upper left corner
 SIZE = 960, 512  # px
 WHITE, GREY, BLUE, PALE, GREEN, RED = (
     (255, 255, 255), (130, 130, 130), (200, 110, 30), (235, 210, 190), (60, 160, 60), (50, 50, 210))

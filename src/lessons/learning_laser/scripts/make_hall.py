@@ -12,7 +12,7 @@ HALL = Path(__file__).resolve().parents[1] / "worlds" / "hall.world"
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="make_hall.py", description=__doc__)
-    parser.add_argument("seed", type=int, nargs="?", default=0, help="another one: other columns")
+    parser.add_argument("seed", type=int, nargs="?", default=0, help="of the columns' places (0)")
     parser.add_argument("--out", type=Path, default=HALL, metavar="FILE", help=f"({HALL})")
     options = parser.parse_args()
     if options.seed < 0:

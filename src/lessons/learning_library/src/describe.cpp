@@ -1,4 +1,4 @@
-// How the library does it: the definition.  库的实现。
+// The library's implementation.  库的实现。
 #include <learning_library/describe.h>
 
 namespace learning_library {

@@ -1,4 +1,4 @@
-// Use a header and a library of our own.  使用自己的头文件和库。
+// Use your own header and library.  使用自己的头文件和库。
 #include <learning_library/describe.h>
 #include <ros/ros.h>
 

@@ -7,7 +7,7 @@ import rospy
 from std_srvs.srv import Empty
 
 WHITE = 255
-# Private parameters of the node /turtlesim, hence below its name.  节点 /turtlesim 的私有参数
+# Private parameters of the node /turtlesim, so below its name.  节点 /turtlesim 的私有参数
 NAMES = ["/turtlesim/background_r", "/turtlesim/background_g", "/turtlesim/background_b"]
 
 
@@ -25,7 +25,7 @@ def main():
     for name in NAMES:
         rospy.set_param(name, WHITE)
     show_background()
-    # A node reads its parameters when it wants to: turtlesim on /clear.  调用 /clear 后才重新读取
+    # Nodes decide when to read parameters: turtlesim on /clear.  调用 /clear 后才重新读取
     rospy.wait_for_service("/clear")
     try:
         rospy.ServiceProxy("/clear", Empty)()

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Exercise own_speed: a parameter says how fast the turtle drives.  练习：速度由参数决定。"""
+"""Exercise own_speed: a parameter sets the turtle's speed.  练习：速度由参数决定。"""
 
 import rospy
 from geometry_msgs.msg import Twist
 
-SPEED = 1.0  # m/s, where nobody has set the parameter  没有设置参数时
+SPEED = 1.0  # m/s, if the parameter is not set  没有设置参数时
 RATE_HZ = 10
 
 
 def speed():
-    """Asked for each command, m/s.  每条命令都会调用。"""
+    """The speed in m/s; called for each command.  每条命令都会调用。"""
     return rospy.get_param("~speed", SPEED)
 
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 const int WHITE = 255;
-// Private parameters of the node /turtlesim, hence below its name.  节点 /turtlesim 的私有参数
+// Private parameters of the node /turtlesim, so below its name.  节点 /turtlesim 的私有参数
 const std::vector<std::string> NAMES = {
     "/turtlesim/background_r", "/turtlesim/background_g", "/turtlesim/background_b"};
 
@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   if (!showBackground()) return 1;
   for (const std::string& name : NAMES) ros::param::set(name, WHITE);
   showBackground();
-  // A node reads its parameters when it wants to: turtlesim on /clear.  调用 /clear 后才重新读取
+  // Nodes decide when to read parameters: turtlesim on /clear.  调用 /clear 后才重新读取
   ros::service::waitForService("/clear");
   std_srvs::Empty clear;
   if (!ros::service::call("/clear", clear)) ROS_ERROR("turtlesim did not clear its background");

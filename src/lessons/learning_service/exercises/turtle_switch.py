@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exercise turtle_switch: the caller says whether it drives.  练习：由调用者决定走还是停。"""
+"""Exercise turtle_switch: the caller starts and stops the turtle.  练习：由调用者决定走还是停。"""
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -17,7 +17,7 @@ class TurtleSwitch:
 
     def switch_callback(self, request):
         """Runs once for each call; request.data is what the caller sent.  每次调用执行一次。"""
-        self.driving = not self.driving  # yours: as the caller says  请修改：按调用者的要求
+        self.driving = not self.driving  # yours: as requested by the caller  请修改：按调用者的要求
         return SetBoolResponse(success=True, message="drives" if self.driving else "stands")
 
     def publish_command(self):

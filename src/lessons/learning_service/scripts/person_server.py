@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Answer a service type of our own.  提供自定义类型的服务。"""
+"""Provide a service of a custom type.  提供自定义类型的服务。"""
 
 import rospy
 from learning_service.srv import Person, PersonResponse

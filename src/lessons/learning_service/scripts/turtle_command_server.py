@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Start and stop the turtle by a service: a server.  服务端：用服务让海龟走或停。"""
+"""A service that starts and stops the turtle.  服务端：用服务让海龟走或停。"""
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -18,7 +18,7 @@ class TurtleCommand:
         rospy.loginfo("ready for /turtle_command")
 
     def command_callback(self, _request):
-        """Runs once for each call, in a thread of its own.  每次调用执行一次。"""
+        """Runs once for each call, in its own thread.  每次调用执行一次。"""
         self.driving = not self.driving
         rospy.loginfo("publish velocity: %s", "yes" if self.driving else "no")
         return TriggerResponse(success=True, message="Change turtle command state!")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Ask turtlesim for a second turtle: call a service.  调用服务，再生成一只海龟。"""
+"""Call a service: turtlesim spawns a second turtle.  调用服务，再生成一只海龟。"""
 
 import rospy
 from turtlesim.srv import Spawn
@@ -11,7 +11,7 @@ NAME = "turtle2"
 def main():
     rospy.init_node("turtle_spawn")
     rospy.loginfo("waiting for /spawn")
-    rospy.wait_for_service("/spawn")  # until turtlesim is there  等待 turtlesim 启动
+    rospy.wait_for_service("/spawn")  # until turtlesim is running  等待 turtlesim 启动
     spawn = rospy.ServiceProxy("/spawn", Spawn)
     try:
         response = spawn(X, Y, THETA, NAME)

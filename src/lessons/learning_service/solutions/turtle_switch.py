@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exercise turtle_switch: the caller says whether it drives.  练习：由调用者决定走还是停。"""
+"""Exercise turtle_switch: the caller starts and stops the turtle.  练习：由调用者决定走还是停。"""
 
 import rospy
 from geometry_msgs.msg import Twist

@@ -1,4 +1,4 @@
-// Answer a service type of our own.  提供自定义类型的服务。
+// Provide a service of a custom type.  提供自定义类型的服务。
 #include <learning_service/Person.h>
 #include <ros/ros.h>
 

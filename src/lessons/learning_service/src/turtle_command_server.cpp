@@ -1,4 +1,4 @@
-// Start and stop the turtle by a service: a server.  服务端：用服务让海龟走或停。
+// A service that starts and stops the turtle.  服务端：用服务让海龟走或停。
 #include <geometry_msgs/Twist.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
@@ -14,7 +14,7 @@ bool commandCallback(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& r
   ROS_INFO("publish velocity: %s", driving ? "yes" : "no");
   response.success = true;
   response.message = "Change turtle command state!";
-  return true;  // false: the client gets no answer  返回 false 表示调用失败
+  return true;  // false: the call fails  返回 false 表示调用失败
 }
 
 int main(int argc, char** argv) {

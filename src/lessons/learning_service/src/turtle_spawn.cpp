@@ -1,4 +1,4 @@
-// Ask turtlesim for a second turtle: call a service.  调用服务，再生成一只海龟。
+// Call a service: turtlesim spawns a second turtle.  调用服务，再生成一只海龟。
 #include <ros/ros.h>
 #include <turtlesim/Spawn.h>
 
@@ -6,9 +6,9 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "turtle_spawn");
   ros::NodeHandle node;
   ROS_INFO("waiting for /spawn");
-  ros::service::waitForService("/spawn");  // until turtlesim is there  等待 turtlesim 启动
+  ros::service::waitForService("/spawn");  // until turtlesim is running  等待 turtlesim 启动
   ros::ServiceClient client = node.serviceClient<turtlesim::Spawn>("/spawn");
-  turtlesim::Spawn spawn;  // the question and the answer  请求和应答都在里面
+  turtlesim::Spawn spawn;  // holds request and response  请求和应答都在里面
   spawn.request.x = 2.0;   // m
   spawn.request.y = 2.0;
   spawn.request.theta = 0.0;  // rad

@@ -15,9 +15,9 @@ WAIT = rospy.Duration(3.0)  # for the frames, at the start  开始时等待坐�
 
 
 def follow(x, y):
-    """Towards a target x m ahead and y m to the left.  目标在前方 x、左方 y 米处。"""
+    """Drive towards a target x m ahead and y m to the left.  目标在前方 x、左方 y 米处。"""
     command = Twist()
-    # Yours: 0 at APART, and never backwards.  请修改：到 APART 处为 0，且不倒车
+    # Yours: 0 at distance APART, never negative.  请修改：到 APART 处为 0，且不倒车
     command.linear.x = DRIVE_GAIN * math.hypot(x, y)
     command.angular.z = TURN_GAIN * math.atan2(y, x)
     return command

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exercise radar_turned: the radar looks to the left.  练习：雷达朝左安装。"""
+"""Exercise radar_turned: the radar points to the left.  练习：雷达朝左安装。"""
 
 import math
 
@@ -18,7 +18,7 @@ def main():
     transform.child_frame_id = "radar"  # child  子坐标系
     transform.transform.translation.x = 0.2  # m
     transform.transform.translation.z = 0.5
-    transform.transform.rotation.w = 1.0  # yours: turned by YAW about z  请修改：绕 z 轴转 YAW
+    transform.transform.rotation.w = 1.0  # yours: a rotation by YAW about z  请修改：绕 z 轴转 YAW
     tf2_ros.StaticTransformBroadcaster().sendTransform(transform)
     rospy.spin()
 

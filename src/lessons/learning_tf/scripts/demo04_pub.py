@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Follow, 2 of 3: world -> a turtle; its name is the argument.  跟随（二）：发布某只海龟的坐标。"""
+"""Follow, 2 of 3: publish world -> the given turtle.  跟随（二）：发布某只海龟的坐标。"""
 
 import math
 import sys
@@ -29,10 +29,10 @@ class TurtleFrame:
 
 
 def main():
-    words = rospy.myargv(sys.argv)  # without the __name:= of roslaunch  去掉 roslaunch 加的参数
+    words = rospy.myargv(sys.argv)  # without roslaunch's __name:=  去掉 roslaunch 加的参数
     if len(words) != 2:
         sys.exit("demo04_pub.py: which turtle? rosrun learning_tf demo04_pub.py turtle1")
-    rospy.init_node("demo04_pub", anonymous=True)  # one for each turtle  每只海龟一个节点
+    rospy.init_node("demo04_pub", anonymous=True)  # one node per turtle  每只海龟一个节点
     TurtleFrame(words[1])
     rospy.spin()
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Follow, 3 of 3: turtle2 drives to where it sees turtle1.  跟随（三）：turtle2 追 turtle1。"""
+"""Follow, 3 of 3: turtle2 drives towards turtle1.  跟随（三）：turtle2 追 turtle1。"""
 
 import math
 
@@ -14,7 +14,7 @@ WAIT = rospy.Duration(3.0)  # for the frames, at the start  开始时等待坐�
 
 
 def follow(x, y):
-    """Towards a target x m ahead and y m to the left.  目标在前方 x、左方 y 米处。"""
+    """Drive towards a target x m ahead and y m to the left.  目标在前方 x、左方 y 米处。"""
     command = Twist()
     command.linear.x = DRIVE_GAIN * math.hypot(x, y)
     command.angular.z = TURN_GAIN * math.atan2(y, x)
@@ -29,7 +29,7 @@ def main():
     rate = rospy.Rate(RATE_HZ)
     while not rospy.is_shutdown():
         try:
-            # turtle1 as turtle2 sees it.  turtle1 在 turtle2 坐标系中的位置
+            # turtle1 in the frame of turtle2.  turtle1 在 turtle2 坐标系中的位置
             target = buffer.lookup_transform("turtle2", "turtle1", rospy.Time(0), WAIT)
             publisher.publish(follow(target.transform.translation.x,
                                      target.transform.translation.y))

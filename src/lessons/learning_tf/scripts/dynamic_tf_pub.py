@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Say where the turtle is, again and again: a moving frame.  发布动态坐标变换。"""
+"""Publish a moving frame: the turtle's pose, over and over.  发布动态坐标变换。"""
 
 import math
 
@@ -18,7 +18,7 @@ def pose_callback(pose):
     transform.child_frame_id = "turtle1"
     transform.transform.translation.x = pose.x
     transform.transform.translation.y = pose.y
-    # A turn by theta about z as a quaternion.  绕 z 轴转 theta 的四元数
+    # A rotation by theta about z, as a quaternion.  绕 z 轴转 theta 的四元数
     transform.transform.rotation.z = math.sin(pose.theta / 2)
     transform.transform.rotation.w = math.cos(pose.theta / 2)
     broadcaster.sendTransform(transform)

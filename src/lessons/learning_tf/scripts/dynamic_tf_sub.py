@@ -2,7 +2,7 @@
 """Where is the point one metre ahead of the turtle?  海龟正前方一米的点在 world 的哪里？"""
 
 import rospy
-import tf2_geometry_msgs  # noqa: F401  teaches tf2 to transform a PointStamped  让 tf2 认识点消息
+import tf2_geometry_msgs  # noqa: F401  lets tf2 transform a PointStamped  让 tf2 认识点消息
 import tf2_ros
 from geometry_msgs.msg import PointStamped
 
@@ -15,7 +15,7 @@ def main():
     tf2_ros.TransformListener(buffer)
     ahead = PointStamped()
     ahead.header.frame_id = "turtle1"
-    ahead.header.stamp = rospy.Time(0)  # 0: the newest there is, not now  0 表示最新的变换
+    ahead.header.stamp = rospy.Time(0)  # 0: the latest available transform  0 表示最新的变换
     ahead.point.x = 1.0  # m
     rate = rospy.Rate(RATE_HZ)
     while not rospy.is_shutdown():

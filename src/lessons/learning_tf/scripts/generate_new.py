@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Follow, 1 of 3: a second turtle.  跟随（一）：生成第二只海龟。"""
+"""Follow, 1 of 3: spawn a second turtle.  跟随（一）：生成第二只海龟。"""
 
 import rospy
 from turtlesim.srv import Spawn

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""From one child to the other, through their parent.  在两个子坐标系之间变换。"""
+"""Transform from one child frame to another, through their parent.  在两个子坐标系之间变换。"""
 
 import rospy
-import tf2_geometry_msgs  # noqa: F401  teaches tf2 to transform a PointStamped  让 tf2 认识点消息
+import tf2_geometry_msgs  # noqa: F401  lets tf2 transform a PointStamped  让 tf2 认识点消息
 import tf2_ros
 from geometry_msgs.msg import PointStamped
 
@@ -19,7 +19,7 @@ def main():
     rate = rospy.Rate(RATE_HZ)
     while not rospy.is_shutdown():
         try:
-            # son1 as son2 sees it: target first, source second.  先目标，后源
+            # son1 in the frame of son2: target first, source second.  先目标，后源
             origin = buffer.lookup_transform("son2", "son1", rospy.Time(0)).transform.translation
             rospy.loginfo("son1 in son2: %.2f, %.2f, %.2f", origin.x, origin.y, origin.z)
             point = buffer.transform(point_in_son1, "son2").point

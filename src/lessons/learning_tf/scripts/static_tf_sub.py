@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Where in the world is what the radar sees?  把雷达坐标系里的点变换到 world。"""
+"""Transform a point that the radar sees into world.  把雷达坐标系里的点变换到 world。"""
 
 import rospy
-import tf2_geometry_msgs  # noqa: F401  teaches tf2 to transform a PointStamped  让 tf2 认识点消息
+import tf2_geometry_msgs  # noqa: F401  lets tf2 transform a PointStamped  让 tf2 认识点消息
 import tf2_ros
 from geometry_msgs.msg import PointStamped
 

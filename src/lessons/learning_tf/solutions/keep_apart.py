@@ -15,7 +15,7 @@ WAIT = rospy.Duration(3.0)  # for the frames, at the start  开始时等待坐�
 
 
 def follow(x, y):
-    """Towards a target x m ahead and y m to the left.  目标在前方 x、左方 y 米处。"""
+    """Drive towards a target x m ahead and y m to the left.  目标在前方 x、左方 y 米处。"""
     command = Twist()
     command.linear.x = DRIVE_GAIN * max(0.0, math.hypot(x, y) - APART)
     command.angular.z = TURN_GAIN * math.atan2(y, x)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exercise radar_turned: the radar looks to the left.  练习：雷达朝左安装。"""
+"""Exercise radar_turned: the radar points to the left.  练习：雷达朝左安装。"""
 
 import math
 

@@ -1,4 +1,4 @@
-// Follow, 2 of 3: world -> a turtle; its name is the argument.  跟随（二）：发布某只海龟的坐标。
+// Follow, 2 of 3: publish world -> the given turtle.  跟随（二）：发布某只海龟的坐标。
 #include <geometry_msgs/TransformStamped.h>
 #include <ros/ros.h>
 #include <tf2_ros/transform_broadcaster.h>
@@ -24,7 +24,7 @@ void poseCallback(const turtlesim::Pose& pose) {
 }
 
 int main(int argc, char** argv) {
-  // Takes the __name:= of roslaunch out of argv. One node for each turtle.  去掉 roslaunch 加的参数
+  // Removes roslaunch's __name:= from argv. One node per turtle.  去掉 roslaunch 加的参数
   ros::init(argc, argv, "demo04_pub", ros::init_options::AnonymousName);
   if (argc != 2) {
     std::cerr << "demo04_pub: which turtle? rosrun learning_tf demo04_pub turtle1\n";

@@ -1,4 +1,4 @@
-// Follow, 3 of 3: turtle2 drives to where it sees turtle1.  跟随（三）：turtle2 追 turtle1。
+// Follow, 3 of 3: turtle2 drives towards turtle1.  跟随（三）：turtle2 追 turtle1。
 #include <geometry_msgs/Twist.h>
 #include <ros/ros.h>
 #include <tf2_ros/buffer.h>
@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   ros::Rate rate(RATE_HZ);
   while (ros::ok()) {
     try {
-      // turtle1 as turtle2 sees it: x ahead, y to the left.  turtle1 在 turtle2 坐标系中的位置
+      // turtle1 in the frame of turtle2: x ahead, y to the left.  turtle1 在 turtle2 坐标系中的位置
       geometry_msgs::Vector3 target =
           buffer.lookupTransform("turtle2", "turtle1", ros::Time(0), WAIT).transform.translation;
       geometry_msgs::Twist command;

@@ -1,4 +1,4 @@
-// Say where the turtle is, again and again: a moving frame.  发布动态坐标变换。
+// Publish a moving frame: the turtle's pose, over and over.  发布动态坐标变换。
 #include <geometry_msgs/TransformStamped.h>
 #include <ros/ros.h>
 #include <tf2_ros/transform_broadcaster.h>
@@ -7,14 +7,14 @@
 #include <cmath>
 
 void poseCallback(const turtlesim::Pose& pose) {
-  static tf2_ros::TransformBroadcaster broadcaster;  // made once  只创建一次
+  static tf2_ros::TransformBroadcaster broadcaster;  // created once  只创建一次
   geometry_msgs::TransformStamped transform;
   transform.header.stamp = ros::Time::now();
   transform.header.frame_id = "world";
   transform.child_frame_id = "turtle1";
   transform.transform.translation.x = pose.x;
   transform.transform.translation.y = pose.y;
-  // A turn by theta about z as a quaternion.  绕 z 轴转 theta 的四元数
+  // A rotation by theta about z, as a quaternion.  绕 z 轴转 theta 的四元数
   transform.transform.rotation.z = std::sin(pose.theta / 2);
   transform.transform.rotation.w = std::cos(pose.theta / 2);
   broadcaster.sendTransform(transform);

@@ -1,7 +1,7 @@
 // Where is the point one metre ahead of the turtle?  海龟正前方一米的点在 world 的哪里？
 #include <geometry_msgs/PointStamped.h>
 #include <ros/ros.h>
-#include <tf2_geometry_msgs/tf2_geometry_msgs.h>  // how to transform a point  让 tf2 认识点消息
+#include <tf2_geometry_msgs/tf2_geometry_msgs.h>  // lets tf2 transform a point  让 tf2 认识点消息
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   tf2_ros::TransformListener listener(buffer);
   geometry_msgs::PointStamped ahead;
   ahead.header.frame_id = "turtle1";
-  ahead.header.stamp = ros::Time(0);  // 0: the newest there is, not now  0 表示最新的变换
+  ahead.header.stamp = ros::Time(0);  // 0: the latest available transform  0 表示最新的变换
   ahead.point.x = 1.0;                // m
   ros::Rate rate(RATE_HZ);
   while (ros::ok()) {

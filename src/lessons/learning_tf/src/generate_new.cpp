@@ -1,4 +1,4 @@
-// Follow, 1 of 3: a second turtle.  跟随（一）：生成第二只海龟。
+// Follow, 1 of 3: spawn a second turtle.  跟随（一）：生成第二只海龟。
 #include <ros/ros.h>
 #include <turtlesim/Spawn.h>
 

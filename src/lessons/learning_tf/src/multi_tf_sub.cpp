@@ -1,7 +1,7 @@
-// From one child to the other, through their parent.  在两个子坐标系之间变换。
+// Transform from one child frame to another, through their parent.  在两个子坐标系之间变换。
 #include <geometry_msgs/PointStamped.h>
 #include <ros/ros.h>
-#include <tf2_geometry_msgs/tf2_geometry_msgs.h>  // how to transform a point  让 tf2 认识点消息
+#include <tf2_geometry_msgs/tf2_geometry_msgs.h>  // lets tf2 transform a point  让 tf2 认识点消息
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 
@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   ros::Rate rate(RATE_HZ);
   while (ros::ok()) {
     try {
-      // son1 as son2 sees it: target first, source second.  先目标，后源
+      // son1 in the frame of son2: target first, source second.  先目标，后源
       geometry_msgs::Vector3 origin =
           buffer.lookupTransform("son2", "son1", ros::Time(0)).transform.translation;
       ROS_INFO("son1 in son2: %.2f, %.2f, %.2f", origin.x, origin.y, origin.z);

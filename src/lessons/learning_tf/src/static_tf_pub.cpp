@@ -1,4 +1,4 @@
-// Say where the radar sits, once and for all.  发布静态坐标变换。
+// Publish a static frame: where the radar is mounted.  发布静态坐标变换。
 #include <geometry_msgs/TransformStamped.h>
 #include <ros/ros.h>
 #include <tf2_ros/static_transform_broadcaster.h>
@@ -13,9 +13,9 @@ int main(int argc, char** argv) {
   transform.transform.translation.x = 0.2;  // m
   transform.transform.translation.y = 0.0;
   transform.transform.translation.z = 0.5;
-  transform.transform.rotation.w = 1.0;  // not turned; all zeros is no rotation  不能全为零
+  transform.transform.rotation.w = 1.0;  // no rotation; all zeros would be invalid  不能全为零
   tf2_ros::StaticTransformBroadcaster broadcaster;
   broadcaster.sendTransform(transform);
   ROS_INFO("world -> radar: 0.2 0.0 0.5");
-  ros::spin();  // latched: later listeners get it too, while this node lives  节点须保持运行
+  ros::spin();  // latched: later listeners get it too, while this node runs  节点须保持运行
 }

@@ -1,7 +1,7 @@
-// Where in the world is what the radar sees?  把雷达坐标系里的点变换到 world。
+// Transform a point that the radar sees into world.  把雷达坐标系里的点变换到 world。
 #include <geometry_msgs/PointStamped.h>
 #include <ros/ros.h>
-#include <tf2_geometry_msgs/tf2_geometry_msgs.h>  // how to transform a point  让 tf2 认识点消息
+#include <tf2_geometry_msgs/tf2_geometry_msgs.h>  // lets tf2 transform a point  让 tf2 认识点消息
 #include <tf2_ros/buffer.h>
 #include <tf2_ros/transform_listener.h>
 

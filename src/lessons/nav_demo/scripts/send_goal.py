@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sends the car to a place on the map: send_goal.py X Y [DEGREES].  把小车派到地图上的一个位置。"""
+"""Sends the car to a pose on the map: send_goal.py X Y [DEGREES].  把小车派到地图上的一个位置。"""
 
 import math
 import sys
@@ -10,11 +10,11 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
-WAIT = 30  # s for move_base to answer  等 move_base 应答的秒数
+WAIT = 30  # s to wait for move_base  等 move_base 应答的秒数
 
 
 def place_of(words):
-    """x and y, m, and degrees, from what was typed.  读取命令行里的位置和角度。"""
+    """x and y, m, and degrees, from the command line.  读取命令行里的位置和角度。"""
     try:
         x, y, degrees = (float(word) for word in (words if len(words) == 3 else [*words, 0]))
         if not all(map(math.isfinite, (x, y, degrees))):
@@ -25,20 +25,20 @@ def place_of(words):
 
 
 def goal_at(x, y, yaw):
-    """A goal in the map's frame; m, rad.  地图坐标系里的目标。"""
+    """A goal in the frame map; m, rad.  地图坐标系里的目标。"""
     goal = MoveBaseGoal()
     goal.target_pose.header.frame_id = "map"
     goal.target_pose.header.stamp = rospy.Time.now()
     goal.target_pose.pose.position.x = x
     goal.target_pose.pose.position.y = y
-    # Half the angle: a quaternion about z.  绕 z 轴的四元数用半角
+    # A quaternion about z uses half the angle.  绕 z 轴的四元数用半角
     goal.target_pose.pose.orientation.z = math.sin(yaw / 2)
     goal.target_pose.pose.orientation.w = math.cos(yaw / 2)
     return goal
 
 
 def wait_for_clock():
-    """Else a wait of 30 s, begun at time 0, is over at once.  否则从 0 开始的等待立刻超时。"""
+    """Otherwise a wait of 30 s from time 0 ends at once.  否则从 0 开始的等待立刻超时。"""
     began = time.monotonic()
     while rospy.get_time() == 0 and not rospy.is_shutdown():
         time.sleep(0.1)
@@ -47,25 +47,25 @@ def wait_for_clock():
 
 
 def tell_progress(feedback):
-    """Called again and again on the way.  途中反复调用。"""
+    """Called repeatedly while driving.  途中反复调用。"""
     place = feedback.base_position.pose.position
     rospy.loginfo_throttle(2, f"at {place.x:.2f}, {place.y:.2f}")
 
 
 def stop_if_driving(client):
-    """At Ctrl-C.  Ctrl-C 时让小车停下。"""
+    """Stop the car at Ctrl-C.  Ctrl-C 时让小车停下。"""
     if client.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE):
         client.cancel_goal()
 
 
 def main():
-    x, y, degrees = place_of(rospy.myargv(sys.argv)[1:])  # without ROS's own  去掉 ROS 自己的参数
+    x, y, degrees = place_of(rospy.myargv(sys.argv)[1:])  # without ROS's  去掉 ROS 自己的参数
     try:
         rospy.init_node("send_goal")
     except rospy.ROSInitException:
         sys.exit("stopped while waiting for a master: start the simulator first")
     wait_for_clock()
-    if rospy.is_shutdown():  # Ctrl-C: perhaps there is no master any more  此时可能已没有 master
+    if rospy.is_shutdown():  # Ctrl-C: the master may have ended  此时可能已没有 master
         sys.exit("stopped")
     client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
     if not client.wait_for_server(rospy.Duration(WAIT)):

@@ -1,34 +1,34 @@
 #!/usr/bin/env python3
-"""Exercise cost_planner: the cheapest way, not the shortest.  练习：代价最小的路，而不是最短的路。
+"""Exercise cost_planner: the cheapest path, not the shortest.  练习：代价最小的路，而不是最短的路。
 
-nav07_planner.py with costs. Try it in the lesson: copy it over src/nav_demo/nav07_planner.py, and
-name the class BreadthFirst again.
+nav07_planner.py with costs. To try it in the lesson, copy it over src/nav_demo/nav07_planner.py
+and rename the class to BreadthFirst.
 """
 
 import heapq
 import math
 from copy import deepcopy
 
-INSCRIBED = 253  # from this cost on the car would touch something; 255 was never seen
+INSCRIBED = 253  # at this cost or more the car would touch something; 255: unknown
 NEIGHBOURS = [(0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, -1), (-1, 1)]
 
 
 class Planner:
-    """The way with the least sum of costs (Dijkstra)."""
+    """The path with the least sum of costs (Dijkstra)."""
 
     def initialize(self, name, costmap):
-        """Once, at the start; `name` is the class's, for parameters and topics below ~name."""
+        """Called once, at the start; `name`: the class's, for parameters and topics below ~name."""
         self.costmap = costmap
 
     def make_plan(self, start, goal):
-        """List of PoseStamped from start to goal; empty where there is no way."""
+        """List of PoseStamped from start to goal; empty if there is no path."""
         grid = self.costmap.snapshot()  # cells (rows, columns), resolution (m), origin (x, y)
         first, last = cell_of(grid, start.pose.position), cell_of(grid, goal.pose.position)
         came_from, spent, waiting = {}, {first: 0.0}, [(0.0, first, None)]
         while waiting and last not in came_from:
             cost, cell, before = heapq.heappop(waiting)
             if cell in came_from:
-                continue  # a cheaper way to it is known  已有更省的路
+                continue  # a cheaper path to it is known  已有更省的路
             came_from[cell] = before
             for row, column in NEIGHBOURS:
                 near = (cell[0] + row, cell[1] + column)
@@ -47,19 +47,19 @@ class Planner:
 
 
 def cell_of(grid, point):
-    """(row, column) of a point in m."""
+    """(row, column) of the cell at a point in m."""
     x, y = grid.origin
     return int((point.y - y) // grid.resolution), int((point.x - x) // grid.resolution)
 
 
 def is_free(grid, cell):
-    """Whether the car's middle may be there."""
+    """Whether the car's centre may be in this cell."""
     rows, columns = grid.cells.shape
     return (0 <= cell[0] < rows and 0 <= cell[1] < columns) and grid.cells[cell] < INSCRIBED
 
 
 def pose_at(grid, cell, like):
-    """The cell's middle, otherwise as the pose `like`."""
+    """The pose `like`, moved to the cell's centre."""
     pose = deepcopy(like)
     pose.pose.position.x = grid.origin[0] + (cell[1] + 0.5) * grid.resolution
     pose.pose.position.y = grid.origin[1] + (cell[0] + 0.5) * grid.resolution

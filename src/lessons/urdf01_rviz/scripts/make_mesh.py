@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes meshes/autolabor_mini.stl, the mesh of demo02: a small car, in metres.  生成小车网格。
 
-The file's z points ahead, x to the left and y up; demo02's rpy="1.57 0 1.57" turns it upright.
+In the file z points forward, x left and y up; demo02's rpy="1.57 0 1.57" rotates it upright.
 """
 
 import math
@@ -11,14 +11,14 @@ from pathlib import Path
 
 FILE = Path(__file__).resolve().parents[1] / "meshes" / "autolabor_mini.stl"
 BODY = (0.15, 0.10, 0.30)  # m, x y z
-BODY_Y = 0.09  # m, the body's middle above the ground
+BODY_Y = 0.09  # m, the body's centre above the ground
 WHEEL_RADIUS, WHEEL_WIDTH = 0.05, 0.03  # m
-WHEEL_X, WHEEL_Z = 0.095, 0.10  # m, from the middle
+WHEEL_X, WHEEL_Z = 0.095, 0.10  # m, from the centre
 CORNERS = 24  # of a wheel
 
 
 def prism(outline, left, right):
-    """Triangles of a solid along x: an outline of (y, z), counter-clockwise seen from +x."""
+    """Triangles of a prism along x; `outline`: (y, z), counter-clockwise as seen from +x."""
     low, high = ([(x, y, z) for y, z in outline] for x in (left, right))
     triangles = []
     for here, (a, b) in enumerate(zip(low, low[1:] + low[:1])):
@@ -50,7 +50,7 @@ def normal(a, b, c):
 
 
 def stl(triangles):
-    """Binary STL: 80 bytes of header, the count, 50 bytes for each triangle."""
+    """Binary STL: 80 bytes of header, the count, 50 bytes per triangle."""
     records = (struct.pack("<12fH", *normal(*each), *chain(*each), 0) for each in triangles)
     return bytes(80) + struct.pack("<I", len(triangles)) + b"".join(records)
 

@@ -1,7 +1,7 @@
-"""What each wheel of a car must do so that no wheel scrubs in a bend (Ackermann's law).
+"""Ackermann steering: angle and speed of each wheel so that none scrubs in a bend.
 
-All wheels roll round one point on the line of the rear axle. Hinges stand above the wheel
-centres. Angles are in rad, counter-clockwise (left) positive; speeds of wheels in rad/s.
+All wheels roll around one point on the line of the rear axle. The steering hinges are above the
+wheel centres. Angles are in rad, counter-clockwise (left) positive; wheel speeds in rad/s.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class CarGeometry:
-    """Lengths in m; a track is the distance between the middles of an axle's two wheels."""
+    """Lengths in m; a track is the distance between the centres of an axle's two wheels."""
 
     wheelbase: float
     front_track: float
@@ -35,7 +35,7 @@ class HingeAngles:
 
 @dataclass(frozen=True)
 class WheelSpeeds:
-    """How fast the four wheels turn, rad/s, forward positive."""
+    """Speeds of the four wheels, rad/s, forward positive."""
 
     left_rear: float
     right_rear: float
@@ -44,22 +44,22 @@ class WheelSpeeds:
 
 
 def curvature_from_angle(car: CarGeometry, steering_angle: float) -> float:
-    """1/m of the path of the rear axle's middle, for the angle of a bicycle's one front wheel."""
+    """Curvature (1/m) of the rear axle's path for the bicycle model's steering angle."""
     return math.tan(steering_angle) / car.wheelbase
 
 
 def angle_from_curvature(car: CarGeometry, curvature: float) -> float:
-    """The bicycle's angle in rad that drives this curvature (1/m)."""
+    """The bicycle model's steering angle, rad, for this curvature (1/m)."""
     return math.atan(curvature * car.wheelbase)
 
 
 def sharpest_angle(car: CarGeometry) -> float:
-    """The bicycle's angle at which the inner front wheel stands across, rad; nothing is sharper."""
+    """The steering angle (rad) that turns the inner front wheel by 90 degrees: the limit."""
     return math.atan(2 * car.wheelbase / max(car.front_track, car.rear_track))
 
 
 def hinge_angles(car: CarGeometry, steering_angle: float) -> HingeAngles:
-    """Both hinges for the bicycle's angle; ValueError at `sharpest_angle` and beyond."""
+    """Both hinge angles for the steering angle; ValueError at `sharpest_angle` and beyond."""
     bend = _checked_curvature(car, steering_angle)
     sideways = bend * car.front_track / 2
     return HingeAngles(
@@ -69,7 +69,7 @@ def hinge_angles(car: CarGeometry, steering_angle: float) -> HingeAngles:
 
 
 def wheel_speeds(car: CarGeometry, speed: float, steering_angle: float) -> WheelSpeeds:
-    """All four wheels for the speed (m/s) of the rear axle's middle; ValueError as above."""
+    """All wheel speeds for the speed (m/s) of the rear axle's middle; ValueError as above."""
     bend = _checked_curvature(car, steering_angle)
     turn = speed / car.wheel_radius
     rear, front = bend * car.rear_track / 2, bend * car.front_track / 2
@@ -83,7 +83,7 @@ def wheel_speeds(car: CarGeometry, speed: float, steering_angle: float) -> Wheel
 
 
 def angle_from_hinges(car: CarGeometry, hinges: HingeAngles) -> float:
-    """The bicycle's angle for two hinges: the mean of the curvatures that each stands for."""
+    """The steering angle for two hinge angles, from the mean of the curvatures they imply."""
     half = car.front_track / 2
     left, right = math.tan(hinges.left), math.tan(hinges.right)
     bends = left / (car.wheelbase + left * half), right / (car.wheelbase - right * half)

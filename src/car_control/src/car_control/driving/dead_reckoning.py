@@ -1,6 +1,6 @@
-"""Where a car is by its own wheels alone: the rear ones say how far, the front ones which way.
+"""Dead reckoning: distance from the rear wheels, direction from the steering hinges.
 
-Errors add up, as with every odometry; here mostly from wheels that slip.
+Errors accumulate, as in every odometry; here mostly from wheel slip.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from car_control.driving.ackermann import (
 
 @dataclass(frozen=True)
 class Motion:
-    """Pose of the rear axle's middle since the start, m and rad, and its speed, m/s and rad/s."""
+    """Pose of the rear axle's middle relative to the start, m and rad, and speed, m/s and rad/s."""
 
     x: float
     y: float
@@ -37,10 +37,10 @@ class DeadReckoning:
 
     def add(self, time: float, left_rear: float, right_rear: float,
             hinges: HingeAngles) -> Motion:
-        """Angles, rad, of rear wheels (they count on beyond a turn) and hinges at `time`, s.
+        """Angles, rad, of rear wheels (they continue beyond a full turn) and hinges at `time`, s.
 
-        A time that is not later than the last one begins anew from the same pose: the clock was set
-        back, and what the wheels did meanwhile is not known.
+        If `time` is not later than the last one, the clock was set back: it starts again from the
+        same pose, because the motion in between is unknown.
         """
         turned = (left_rear + right_rear) / 2
         bend = curvature_from_angle(self._car, angle_from_hinges(self._car, hinges))

@@ -1,4 +1,4 @@
-"""A way to follow, as points on the ground: its length, headings, curvatures, nearest point."""
+"""A path to follow, as points on the ground: its length, headings, curvatures, nearest point."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class NearestPoint:
-    """The point of a path closest to a place."""
+    """The point of a path closest to a given place."""
 
     s: float  # m along the path
     lateral: float  # m; positive: the place is to the left of the path
@@ -18,7 +18,7 @@ class NearestPoint:
 
 
 class Path:
-    """A polyline; a closed one goes on from its last point to its first."""
+    """A polyline; a closed one also connects its last point to its first."""
 
     def __init__(self, points: np.ndarray, closed: bool = False):
         """`points`: (n, 2) in m, no two neighbours equal; n >= 2, or 3 if closed."""
@@ -38,11 +38,11 @@ class Path:
 
     @property
     def length(self) -> float:
-        """Metres from the first point to the last, or round to the first again."""
+        """Metres from the first point to the last; of a closed path, back to the first."""
         return float(self._s[-1])
 
     def point(self, s: float) -> np.ndarray:
-        """(x, y) at s metres; past the ends of an open path: the end."""
+        """(x, y) at s metres; beyond the ends of an open path, the end."""
         edge, share = self._locate(s)
         return self._starts[edge] + share * self._edges[edge]
 
@@ -67,7 +67,7 @@ class Path:
         )
 
     def curvature(self) -> np.ndarray:
-        """(n,) 1/m, left positive: at each point the circle through it and its neighbours."""
+        """(n,) 1/m, left positive, of the circle through each point and its neighbours."""
         before, here, after = self._neighbours()
         back, on = here - before, after - here
         across = back[:, 0] * on[:, 1] - back[:, 1] * on[:, 0]
@@ -85,7 +85,7 @@ class Path:
         return self.points[:-2], self.points[1:-1], self.points[2:]
 
     def _locate(self, s: float) -> tuple[int, float]:
-        """The edge at s metres, and how much of it lies behind."""
+        """The edge at s metres, and the share of it that lies behind."""
         s = s % self.length if self.closed else min(max(s, 0.0), self.length)
         edge = min(int(np.searchsorted(self._s, s, side="right")) - 1, len(self.spacing) - 1)
         return edge, (s - self._s[edge]) / self.spacing[edge]

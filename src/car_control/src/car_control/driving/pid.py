@@ -1,4 +1,4 @@
-"""A PID law with a clamped output, antiwindup and a filtered derivative."""
+"""A PID controller with clamped output, anti-windup and filtered derivative."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ class PidGains:
 
 
 class Pid:
-    """One loop. The sum stands still while it would push the output further past its limit."""
+    """One loop. The integral is held while it would push the output further beyond its limit."""
 
     def __init__(self, gains: PidGains):
-        self.gains = gains  # may be changed at any time; the sum is kept as a part of the output
+        self.gains = gains  # may change at any time: the integral is kept in units of the output
         self.reset()
 
     def reset(self) -> None:
-        """Forget the past: no sum, and no derivative at the next error."""
+        """Reset: no integral, and no derivative at the next error."""
         self._integral = 0.0  # in units of the output, so that a new ki makes no jump
         self._error: float | None = None
         self._derivative = 0.0  # units of the error per s
 
     def compute(self, error: float, period: float) -> float:
-        """The output for this error, `period` seconds after the last one (0: the same moment).
+        """The output for this error, `period` seconds after the last one (0: the same time).
 
-        A value that is not finite, or time that goes back, is a ValueError and changes nothing.
+        A value that is not finite or a negative period raises ValueError and changes nothing.
         """
         if not (math.isfinite(error) and math.isfinite(period) and period >= 0):
             raise ValueError(f"error {error!r} and period {period!r} s: both must be finite")

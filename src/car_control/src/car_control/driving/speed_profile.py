@@ -1,4 +1,4 @@
-"""How fast a path may be driven at each of its points: by grip in bends, throttle and brakes."""
+"""Speed profile: the highest speed at each point of a path, by grip, throttle and brakes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class SpeedLimits:
 
 
 def bend_speed(curvature: np.ndarray, limits: SpeedLimits) -> np.ndarray:
-    """m/s at which these bends (1/m, any sign) use up the lateral acceleration, or `speed`."""
+    """Highest speed, m/s, in bends of this curvature (1/m, any sign), at most `speed`."""
     sharpest = limits.lateral_acceleration / limits.speed**2  # below it `speed` is the limit
     return np.sqrt(limits.lateral_acceleration / np.maximum(np.abs(curvature), sharpest))
 
@@ -35,7 +35,7 @@ def speed_profile(
     start_speed: float | None = None,
     closed: bool = False,
 ) -> np.ndarray:
-    """(n,) m/s at each point of a path with curvature (n,) in 1/m.
+    """Speeds (n,), m/s, at the points of a path with curvature (n,) in 1/m.
 
     spacing: m from each point to the next, (n - 1,), or (n,) if closed. The speed a bend allows is
     lowered by one pass forward, v2^2 <= v1^2 + 2 a ds, and one backward for the brakes. With
@@ -55,7 +55,7 @@ def speed_profile(
 
 
 def _closed_passes(squared: np.ndarray, spacing: np.ndarray, limits: SpeedLimits) -> np.ndarray:
-    """Both passes round the slowest point, which no pass can lower: there the circle is cut."""
+    """Both passes, starting at the slowest point, which no pass can lower."""
     cut = int(np.argmin(squared))
     ring = np.roll(squared, -cut)
     ring = np.append(ring, ring[0])
@@ -66,6 +66,6 @@ def _closed_passes(squared: np.ndarray, spacing: np.ndarray, limits: SpeedLimits
 
 
 def _pass(squared: np.ndarray, gains: np.ndarray) -> None:
-    """Lower each squared speed, in place, to what can be reached from the one before it."""
+    """Lower each squared speed, in place, to what is reachable from the one before it."""
     for i, gain in enumerate(gains):
         squared[i + 1] = min(squared[i + 1], squared[i] + gain)

@@ -1,4 +1,4 @@
-"""Stanley's law: turn the front wheels along the path, and towards it the more, the slower.
+"""Stanley controller: steer along the path, and towards it, more sharply at low speed.
 
 Law: angle = heading error + atan(gain * distance / speed), both at the front axle (G. Hoffmann,
 C. Tomlin, M. Montemerlo, S. Thrun, Autonomous Automobile Trajectory Tracking, ACC 2007).
@@ -14,17 +14,17 @@ from .path import Path
 
 @dataclass(frozen=True)
 class StanleyGains:
-    """How hard the car turns to the path."""
+    """How sharply the car turns towards the path."""
 
-    gain: float  # 1/s, metres per second of approach for each metre beside the path
+    gain: float  # 1/s, m/s of approach per m of distance from the path
     softening: float = 0.1  # m/s, added to the speed so that a standing car does not jump
 
 
 def stanley_angle(heading_error: float, lateral: float, speed: float, gains: StanleyGains) -> float:
     """Steering angle in rad, left positive.
 
-    heading_error: rad, the path's heading minus the car's. lateral: m that the front axle is to
-    the left of the path. speed: m/s; backwards counts as its amount.
+    heading_error: rad, the path's heading minus the car's. lateral: m from the path to the front
+    axle, left positive. speed: m/s; its sign is ignored.
     """
     turned = math.remainder(heading_error, 2 * math.pi)
     return turned - math.atan2(gains.gain * lateral, abs(speed) + gains.softening)

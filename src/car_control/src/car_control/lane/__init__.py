@@ -1,1 +1,1 @@
-"""Following the yellow line in the middle of a road by camera; knows no ROS."""
+"""Follows the yellow line in the middle of a road by camera; no ROS."""

@@ -1,4 +1,4 @@
-"""How a line of points bends, place by place."""
+"""The curvature along a line of points."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-FEWEST = 4  # points that a bend is fitted to
+FEWEST = 4  # points needed to fit a bend
 
 
 @dataclass(frozen=True)
@@ -22,10 +22,10 @@ class Bend:
 
 
 def bends_along(points: np.ndarray, spacing: float, window: float) -> list[Bend]:
-    """The bend at the first point and every `spacing` m on; none for fewer than FEWEST points.
+    """Bends at the first point and every `spacing` m; none for fewer than FEWEST points.
 
-    points: (n, 2) m, in order. window: m of line, half of it to each side where there is so much,
-    that one parabola is fitted to.
+    points: (n, 2) m, in order. window: m of line to which each parabola is fitted, half of it on
+    each side, if the line is that long.
     """
     if len(points) < FEWEST:
         return []
@@ -45,5 +45,5 @@ def _fit(points: np.ndarray, s: np.ndarray, place: float, window: float) -> Bend
     along, across = ((near - middle) @ np.array([[c, -d], [d, c]])).T
     c2, c1, c0 = np.polyfit(along, across, 2)
     x, y = middle + c0 * np.array((-d, c))
-    # The parabola's own curvature falls off to its sides, a road's does not: take its top's.
+    # A parabola's curvature falls off from its vertex, a road's does not: use the vertex's.
     return Bend(place, float(x), float(y), turned + math.atan(c1), float(2 * c2))

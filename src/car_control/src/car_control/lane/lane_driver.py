@@ -13,18 +13,18 @@ from car_control.lane.bend_memory import BendMemory
 from car_control.lane.bends import Bend, bends_along
 from car_control.lane.lane_settings import LaneSettings
 
-SPACING = 0.2  # m between the places whose bends are looked at
-WINDOW = 0.6  # m of line that one bend is fitted to
-SPEED_TIME = 0.1  # s in which the wheels follow a new speed, about
-LONGEST_PERIOD = 0.2  # s: after a longer pause what was known is old
-BLINK = 0.3  # s without a line in which the car goes on as it was
+SPACING = 0.2  # m between the places whose bends are computed
+WINDOW = 0.6  # m of line to which one bend is fitted
+SPEED_TIME = 0.1  # s, about the time that the wheels need to reach a new speed
+LONGEST_PERIOD = 0.2  # s; after a longer pause the state is outdated
+BLINK = 0.3  # s without a line during which the car keeps its last command
 
 WAITING, FOLLOWING, SEARCHING, STOPPED = "waiting", "following", "searching", "stopped"
 
 
 @dataclass(frozen=True)
 class LaneCommand:
-    """m/s, rad, and which of the four states the driver is in."""
+    """Speed (m/s), steering angle (rad), and which of the four states the driver is in."""
 
     speed: float
     steering_angle: float
@@ -32,21 +32,21 @@ class LaneCommand:
 
 
 class LaneDriver:
-    """Call `drive` once for each image; times are those of the images, in s."""
+    """Call `drive` once per image; times are the images' stamps, in s."""
 
     def __init__(self, settings: LaneSettings):
         self.settings = settings  # may be changed at any time
         self.memory, self.pid = BendMemory(), Pid(PidGains(0.0))
         self.state = WAITING
-        self.error = 0.0  # m beside the line ahead of the car; positive: the line is to the left
-        self.lateral = 0.0  # m to the left, where the line came into sight last
+        self.error = 0.0  # m from the line ahead of the car; positive: the line is to the left
+        self.lateral = 0.0  # m to the left, where the line last entered the image
         self._last = LaneCommand(0.0, 0.0, WAITING)
         self._last_time: float | None = None
         self._seen_time = 0.0
-        self._speed = 0.0  # m/s, about what the wheels do
+        self._speed = 0.0  # m/s, estimated speed of the wheels
 
     def drive(self, time: float, seen: np.ndarray) -> LaneCommand:
-        """What to do when these points of the line (n, 2) are seen at this time."""
+        """The command for an image at this time with these points of the line (n, 2)."""
         period = self._period(time)
         self._speed += (self._last.speed - self._speed) * (1 - math.exp(-period / SPEED_TIME))
         self.memory.drive(self._speed * period)
@@ -60,7 +60,7 @@ class LaneDriver:
         return self._last
 
     def halt(self) -> None:
-        """The car stands, for whatever reason: what was known is old."""
+        """The car was stopped, for whatever reason: reset the state."""
         self.memory.forget()
         self.pid.reset()
         self._last = LaneCommand(0.0, 0.0, self.state)
@@ -83,14 +83,14 @@ class LaneDriver:
         self.pid.gains = PidGains(
             settings.kp, settings.ki, settings.kd, limit, settings.derivative_time
         )
-        # The line's own bend where the car will be when the wheels have turned.
+        # The line's curvature where the car will be when the wheels have turned.
         bend = float(self.memory.curvature(self._speed * settings.latency))
         angle = math.atan(settings.wheelbase * bend) + self.pid.compute(self.error, period)
         speed = self._planned_speed(bends, period)
         return LaneCommand(speed, max(-limit, min(limit, angle)), FOLLOWING)
 
     def _error(self, near: Bend) -> float:
-        """m between the line where it comes into sight and where it would be seen from on it."""
+        """m between the line's nearest visible point and where it would be with the car on it."""
         shape = self.memory.shape(near.x)
         y, heading = (np.interp(near.x, shape[:, 0], shape[:, k]) for k in (1, 2))
         return float((near.y - y) * math.cos(heading))
@@ -106,7 +106,7 @@ class LaneDriver:
         before = np.arange(0.0, bends[0].x, SPACING)
         curvature = np.append(self.memory.curvature(before), [bend.curvature for bend in bends])
         speed = speed_profile(curvature, np.full(len(curvature) - 1, SPACING), limits)[0]
-        # Nothing is known beyond the last place: be slow enough there to search.
+        # Beyond the last place nothing is known: be slow enough there to search.
         sight = SPACING * (len(curvature) - 1)
         speed = min(speed, math.sqrt(settings.search_speed**2 + 2 * settings.braking * sight))
         speed /= 1 + abs(self.error) / settings.error_slowdown
@@ -114,7 +114,7 @@ class LaneDriver:
         return max(min(speed, faster), min(settings.search_speed, settings.max_speed))
 
     def _without_line(self, time: float) -> LaneCommand:
-        """Go on for a moment; then turn slowly to where the line was; stop if it does not come."""
+        """Continue for a moment, then turn slowly to where the line was; finally stop."""
         settings, lost = self.settings, time - self._seen_time
         if self.state in (WAITING, STOPPED):
             return LaneCommand(0.0, 0.0, self.state)

@@ -1,4 +1,4 @@
-"""Where the yellow line is in an image, and where that is on the ground.
+"""Finds the yellow line in an image, and its points on the ground.
 
 Ground points are (x forward, y left) in m from the middle of the rear axle. Yellow is the smaller
 of red and green minus blue: white, grey, green and blue have little of it in any light.
@@ -14,11 +14,11 @@ import numpy as np
 
 from car_control.lane.lane_settings import LaneSettings
 
-ROWS = 24  # that are looked at, closer together near the car
-BAND = 3  # rows averaged into one, against noise
-WIDEST = 4.0  # times the line's width: what a row may cut out of a line that runs across
+ROWS = 24  # searched; denser on the ground near the car
+BAND = 3  # rows averaged into one, to reduce noise
+WIDEST = 4.0  # times the line's width: longest cut of a row through a line that runs across
 FIRST_GATE = 0.6  # m from the expected place, for the first point
-GATE, GATE_SLOPE = 0.06, 0.6  # m, and m per m of way, from where the points so far lead
+GATE, GATE_SLOPE = 0.06, 0.6  # m, and m per m of distance, from the extrapolated points
 
 
 @dataclass(frozen=True)
@@ -31,18 +31,18 @@ class Line:
 
 @dataclass(frozen=True)
 class Rows:
-    """The image rows that are looked at, the nearest first."""
+    """The image rows that are searched, the nearest first."""
 
     row: np.ndarray  # (n,) px
     x: np.ndarray  # (n,) m ahead of the rear axle
     px_per_m: np.ndarray  # (n,) across
-    middle: float  # px, column straight ahead of the camera
+    middle: float  # px, the column straight ahead of the camera
 
 
 def find_line(image: np.ndarray, settings: LaneSettings, expected: float = 0.0) -> Line:
     """The line in a BGR image (h, w, 3) uint8 of any size; no points if there is none.
 
-    expected: m to the left, about where the line's nearest point should be.
+    expected: about where the line's nearest point should be, m to the left.
     """
     if min(image.shape[:2]) < BAND:
         return Line(np.empty((0, 2)), np.empty((0, 2)))
@@ -65,14 +65,14 @@ def find_line(image: np.ndarray, settings: LaneSettings, expected: float = 0.0) 
 
 @lru_cache(maxsize=8)
 def plan_rows(height_px: int, width_px: int, settings: LaneSettings) -> Rows:
-    """Rows from the bottom of the image to `sight`, evenly spread over the distance's logarithm."""
+    """Rows from the bottom of the image to `sight`, spaced evenly in the log of the distance."""
     focal_px = width_px / 2 / math.tan(settings.camera_hfov / 2)
     c, s = math.cos(settings.camera_pitch), math.sin(settings.camera_pitch)
     height = settings.camera_height
-    up = -(height_px / 2 - 1 - BAND // 2) / focal_px  # of the lowest row's direction
+    up = -(height_px / 2 - 1 - BAND // 2) / focal_px  # slope of the lowest row's direction
     down = s - up * c
     if down <= 0:
-        # The camera looks at the sky.
+        # The camera only sees the sky.
         return Rows(np.zeros(0, int), np.zeros(0), np.zeros(0), width_px / 2)
     nearest = height * (c + up * s) / down
     distance = np.geomspace(max(nearest, 0.02), max(settings.sight, 1.1 * nearest), ROWS)
@@ -86,14 +86,14 @@ def plan_rows(height_px: int, width_px: int, settings: LaneSettings) -> Rows:
 
 
 def _yellowness(image: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """(rows, w) float: how much yellower than grey, averaged over BAND rows."""
+    """(rows, w) float: min(red, green) minus blue, averaged over BAND rows."""
     bands = image[rows[:, None] + np.arange(BAND) - BAND // 2].astype(np.int16)
     blue, green, red = bands[..., 0], bands[..., 1], bands[..., 2]
     return (np.minimum(red, green) - blue).mean(axis=1)
 
 
 def _bright_pieces(yellow: np.ndarray, width_px: np.ndarray, contrast: float) -> list[list[float]]:
-    """For each row the middles (column) of the pieces about as wide as the line."""
+    """For each row, the middles (columns) of the pieces that are about as wide as the line."""
     pieces = []
     columns = np.arange(yellow.shape[1])
     for values, width in zip(yellow, width_px):
@@ -111,7 +111,7 @@ def _bright_pieces(yellow: np.ndarray, width_px: np.ndarray, contrast: float) ->
 
 
 def _guess(points: list[tuple[float, float]], x: float, expected: float) -> tuple[float, float]:
-    """Where (m to the left) the line should be at x, and how far from there it may be."""
+    """Where (m to the left) the line should be at x, and the tolerance, m."""
     if not points:
         return expected, FIRST_GATE
     (x1, y1), (x0, y0) = points[-1], points[max(-3, -len(points))]

@@ -20,4 +20,4 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
               for seed in range(round(limits["halls"]))]
     yield at_least("halls with the finish reached", sum(time is not None for time, _ in drives),
                    limits["halls"])
-    yield at_least("air round the robot's body, least", min(air for _, air in drives), 0.0, " m")
+    yield at_least("least clearance of the robot's body", min(air for _, air in drives), 0.0, " m")

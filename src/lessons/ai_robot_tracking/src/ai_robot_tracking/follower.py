@@ -21,37 +21,37 @@ from ai_robot_tracking.red_target import (
 from ai_robot_tracking.settings import number
 
 FOLLOWING, WAITING, SEARCHING = "following", "waiting", "searching"
-LONGEST_PERIOD = 0.2  # s that one image may count for
+LONGEST_PERIOD = 0.2  # s, the most that counts between two images
 RATE_SMOOTHING = 0.3  # s over which the target's bearing rate is smoothed
 LEAP = 0.5            # rad, or share of the distance: a larger jump means another object
 
 
 @dataclass(frozen=True)
 class FollowerSettings(RedSettings):
-    """Section visual_tracker_pid of the parameter file: which red, and the PID's own numbers."""
+    """Section visual_tracker_pid of the parameter file: colour bounds, and the PID's parameters."""
 
     target_radius: float = number(0.01, 10, "m, of the cylinder")
     target_height: float = number(0.01, 10, "m")
     camera_hfov: float = number(0.1, 3.0, "rad")
     wanted_distance: float = number(0.1, 20, "m from the camera to the cylinder's axis")
-    kp_turn: float = number(0, 20, "rad/s for each rad")
-    ki_turn: float = number(0, 20, "rad/s for each rad s")
-    kd_turn: float = number(0, 20, "rad/s for each rad/s")
-    kp_distance: float = number(0, 20, "m/s for each m")
-    ki_distance: float = number(0, 20, "m/s for each m s")
-    kd_distance: float = number(0, 20, "m/s for each m/s")
-    max_speed: float = number(0, 5, "m/s, forwards")
+    kp_turn: float = number(0, 20, "rad/s per rad")
+    ki_turn: float = number(0, 20, "rad/s per rad s")
+    kd_turn: float = number(0, 20, "rad/s per rad/s")
+    kp_distance: float = number(0, 20, "m/s per m")
+    ki_distance: float = number(0, 20, "m/s per m s")
+    kd_distance: float = number(0, 20, "m/s per m/s")
+    max_speed: float = number(0, 5, "m/s, forward")
     max_reverse: float = number(0, 5, "m/s")
     max_turn: float = number(0, 10, "rad/s")
-    patience: float = number(0, 60, "s without the target until it is searched for")
+    patience: float = number(0, 60, "s without the target before it searches")
     search_turn: float = number(0, 10, "rad/s")
-    search_angle: float = number(0, 3.1, "rad to each side before it turns all round")
-    image_timeout: float = number(0.05, 60, "s without a fresh image until it stands")
+    search_angle: float = number(0, 3.1, "rad to each side before it turns all the way round")
+    image_timeout: float = number(0.05, 60, "s without a new image until it stops")
 
 
 @dataclass(frozen=True)
 class Sighting:
-    """The target in a picture: rad to the left of the camera's axis, and m to its axis."""
+    """The target in an image: rad to the left of the camera's axis, and m to its axis."""
 
     bearing: float
     distance: float
@@ -67,21 +67,21 @@ def sighting(blob: Blob, shape: tuple[int, int], settings: FollowerSettings) -> 
 
 
 class Follower:
-    """Takes one image after another; returns velocities."""
+    """Returns a command for each image, in order."""
 
     def __init__(self, settings: FollowerSettings):
         self.settings = settings
         self.state = WAITING
-        self.seen: Sighting | None = None  # now; None: not in sight
+        self.seen: Sighting | None = None  # in the last image; None: not in sight
         self._turn, self._speed = Pid(), Pid()
-        self._time: float | None = None  # s, of the last picture
+        self._time: float | None = None  # s, of the last image
         self._last: Sighting | None = None
         self._lost_for, self._side = math.inf, 1.0
-        self._drift = 0.0  # rad/s, at which the target goes round the robot, left positive
-        self._turning = 0.0  # rad/s, as told last
+        self._drift = 0.0  # rad/s at which the target moves round the robot, left positive
+        self._turning = 0.0  # rad/s, last command
 
     def drive(self, picture: np.ndarray, time: float) -> tuple[float, float]:
-        """Speed (m/s) and turn (rad/s, left positive) after a BGR picture of that time (s)."""
+        """Speed (m/s) and turn rate (rad/s, left positive) for a BGR image at this time (s)."""
         period = 0.0 if self._time is None else min(max(time - self._time, 0.0), LONGEST_PERIOD)
         self._time = time
         self.seen = self._look(picture)
@@ -90,13 +90,13 @@ class Follower:
         return speed, self._turning
 
     def halt(self) -> None:
-        """The robot is being stopped: start afresh with the next image."""
+        """The robot is being stopped: start again with the next image."""
         self._turn.restart()
         self._speed.restart()
         self._time, self._turning, self._drift = None, 0.0, 0.0
 
     def _look(self, picture: np.ndarray) -> Sighting | None:
-        """The blob nearest to the target's last place; after a loss the largest of its shape."""
+        """The blob nearest to the target's last place; after a loss, the largest of its shape."""
         s, shape = self.settings, picture.shape[:2]
         mask = red_mask(picture, s.colour)
         blobs = find_blobs(mask, s.least_radius)
@@ -131,7 +131,7 @@ class Follower:
         return speed * max(math.cos(2 * seen.bearing), 0.0), turn  # turn to it first, then drive
 
     def _search(self, period: float) -> tuple[float, float]:
-        """Stand a moment, look to the side where it was last, to the other, then all round."""
+        """Wait a moment, turn to the side where it was last seen, to the other, then all round."""
         s = self.settings
         if self._lost_for == 0.0:
             self._side = math.copysign(1.0, self._last.bearing + self._drift)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-CHANNELS = {"bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4}  # encodings with colour that are read
+CHANNELS = {"bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4}  # supported encodings, all with colour
 FROZEN_TIME = 0.5  # s with the same image while moving
 
 
@@ -13,13 +13,13 @@ class BadImage(ValueError):
 
 
 def decode(encoding: str, width: int, height: int, step: int, data: bytes) -> np.ndarray:
-    """The picture (height, width, 3), uint8, BGR, of a sensor_msgs/Image's fields.
+    """The image (height, width, 3), uint8, BGR, from the fields of a sensor_msgs/Image.
 
-    Raises BadImage where encoding and sizes do not fit each other.
+    Raises BadImage if encoding, sizes and data are inconsistent.
     """
     channels = CHANNELS.get(encoding)
     if channels is None:
-        raise BadImage(f"encoding '{encoding}' has no colours that this node reads; it reads "
+        raise BadImage(f"encoding '{encoding}' is not supported; use one of "
                        f"{', '.join(CHANNELS)}")
     row = width * channels
     if width == 0 or height == 0:
@@ -36,7 +36,7 @@ def decode(encoding: str, width: int, height: int, step: int, data: bytes) -> np
 
 
 class ImageCheck:
-    """Looks at one picture after the other."""
+    """Checks each image, in order."""
 
     def __init__(self) -> None:
         self._last: np.ndarray | None = None
@@ -44,17 +44,17 @@ class ImageCheck:
         self._frozen = False
 
     def look(self, picture: np.ndarray, time: float, moving: bool) -> None:
-        """`picture` (rows, columns, 3) came at this time, s; `moving`: the robot was told to move.
+        """`picture` (rows, columns, 3) came at this time, s; `moving`: the robot should move.
 
-        Raises BadImage for an image of a single colour, and for one that has been identical, byte
-        by byte, for FROZEN_TIME in which the robot should have moved, until another one comes.
+        Raises BadImage for an image of a single colour, and for one that has stayed identical, byte
+        by byte, for FROZEN_TIME while the robot should move, until a different one comes.
         """
         if self._last is None or not np.array_equal(picture, self._last):
             self._last, self._same_since, self._frozen = picture, time, False
         elif (not moving and not self._frozen) or time < self._same_since:
-            self._same_since = time  # a standing robot sees no change; or time was reset
+            self._same_since = time  # a standing robot sees no change, or time was reset
         if (picture == picture[0, 0]).all():
             raise BadImage("it is blank: every pixel has the same colour")
         self._frozen = self._frozen or time - self._same_since >= FROZEN_TIME
         if self._frozen:
-            raise BadImage("it is frozen: the same picture again and again while the robot moves")
+            raise BadImage("it is frozen: the same image again and again while the robot moves")

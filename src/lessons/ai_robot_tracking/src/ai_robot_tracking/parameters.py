@@ -1,4 +1,4 @@
-"""A node's own parameters: what a launch file or `_key:=value` on the command line gives it."""
+"""A node's private parameters, from a launch file or `_key:=value` on the command line."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from ai_robot_tracking.settings import Settings, SettingsError, load_settings
 
 
 def own_parameters() -> dict[str, object]:
-    """By name, without `~`; those of the command line are taken off the parameter server.
+    """By name, without `~`; those from the command line are deleted from the parameter server.
 
-    SettingsError where one value stands in place of all of them.
+    SettingsError if a single value is in place of all of them.
     """
     given = rospy.get_param("~", {})
     if not isinstance(given, dict):
         raise SettingsError(f"the parameter {rospy.get_name()} is {given!r}: there should be "
                             f"parameters below it; type: rosparam delete {rospy.get_name()}")
     for key in load_command_line_node_params(sys.argv):
-        rospy.delete_param(f"~{key}")  # _key:=value is for this run: it would stay for the next one
+        rospy.delete_param(f"~{key}")  # _key:=value must not affect the next run
     return dict(given)
 
 
 def read_settings(kind: type[Settings], section: str) -> Settings:
-    """From the section of config/tracking_params.yaml, or of the file in the parameter ~config.
+    """Settings from a section of config/tracking_params.yaml, or of the file in ~config.
 
-    The node's other parameters win over the file. If they do not fit, one line ends the program.
+    The node's other parameters override the file. If a value is invalid, exits with one line.
     """
     folder = Path(rospkg.RosPack().get_path("ai_robot_tracking"), "config")
     try:

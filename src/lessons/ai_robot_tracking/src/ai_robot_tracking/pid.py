@@ -1,4 +1,4 @@
-"""A PID controller whose sum does not grow while its output is at a bound."""
+"""A PID controller whose integral does not grow while its output is at a bound."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Gains:
-    """Of the error, its sum over time, and its change."""
+    """Gains of the error, its integral, and its derivative."""
 
     p: float
     i: float
@@ -15,13 +15,13 @@ class Gains:
 
 
 class Pid:
-    """One loop; times in s, errors and outputs in whatever the gains say."""
+    """One loop; times in s; the units of errors and outputs follow from the gains."""
 
     def __init__(self) -> None:
         self.restart()
 
     def restart(self) -> None:
-        """Forget sum and last error."""
+        """Reset the integral and the last error."""
         self._sum, self._last = 0.0, None
 
     def update(self, error: float, period: float, gains: Gains, low: float, high: float) -> float:
@@ -31,6 +31,6 @@ class Pid:
         grown = self._sum + error * period
         wanted = gains.p * error + gains.i * grown + gains.d * change
         bounded = min(max(wanted, low), high)
-        if wanted == bounded or error * (wanted - bounded) < 0:  # else it would wind up
+        if wanted == bounded or error * (wanted - bounded) < 0:  # anti-windup
             self._sum = grown
         return bounded

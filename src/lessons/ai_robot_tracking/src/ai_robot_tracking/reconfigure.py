@@ -1,6 +1,6 @@
-"""Settings that change while a node runs: `rosrun dynamic_reconfigure dynparam set NODE KEY VALUE`.
+"""Changes settings while a node runs: `rosrun dynamic_reconfigure dynparam set NODE KEY VALUE`.
 
-The settings' dataclass takes the place of a .cfg file.
+The settings' dataclass replaces a .cfg file.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ Settings = TypeVar("Settings")
 
 
 def offer_settings(settings: Settings, apply: Callable[[Settings], None]) -> Server:
-    """Offer every number; `apply` gets all of them now and after each change, on ROS's threads.
+    """Offer all numbers; `apply` gets them now and after each change, in ROS's threads.
 
-    A number out of its bounds is a warning, and everything stays as it was.
+    A number outside its bounds causes a warning and changes nothing.
     """
     current = settings
 
@@ -43,17 +43,17 @@ def offer_settings(settings: Settings, apply: Callable[[Settings], None]) -> Ser
 
 
 class _Forgetful(Server):
-    """Keeps off the parameter server: a change must not outlive the node and override its file."""
+    """Does not use the parameter server: a change must not override the next run's file."""
 
     def _copy_from_parameter_server(self) -> None:
-        """The settings were read from there already."""
+        """Not needed: the settings were already read."""
 
     def _copy_to_parameter_server(self) -> None:
-        """Clients ask the node."""
+        """Not needed: clients ask the node."""
 
 
 def _described(settings: object) -> SimpleNamespace:
-    """What a class made from a .cfg file would hold."""
+    """The description that a class generated from a .cfg file would have."""
     entries = [{"name": entry.name, "type": "double", "level": 0, "edit_method": "",
                 "description": entry.metadata["meaning"], "min": float(entry.metadata["low"]),
                 "max": float(entry.metadata["high"])} for entry in fields(settings)]

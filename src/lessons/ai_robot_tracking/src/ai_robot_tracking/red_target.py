@@ -11,16 +11,16 @@ import numpy as np
 from ai_robot_tracking.settings import number
 
 KERNEL = np.ones((3, 3), np.uint8)
-PASSES = 2  # of erosion, then of dilation: specks vanish
-HIGH_ENOUGH = 0.7  # least share of the target's height for a column to belong to it
-EDGE_PX = 2  # a blob this close to the image's edge is taken to be cut off
+PASSES = 2  # of erosion, then of dilation, to remove specks
+HIGH_ENOUGH = 0.7  # least share of the target's height at which a column belongs to it
+EDGE_PX = 2  # a blob this close to the image's edge counts as cut off
 
 
 @dataclass(frozen=True)
 class Colour:
     """Bounds in HSV: hue 0..180, saturation and value 0..255.
 
-    Where hue_low is larger than hue_high the range goes over 180, which is 0 again.
+    If hue_low is larger than hue_high, the range passes through 180, which equals 0.
     """
 
     hue_low: float
@@ -33,39 +33,39 @@ class Colour:
 class RedSettings:
     """The parameters shared by both trackers' sections of the parameter file."""
 
-    hue_low: float = number(0, 180, "0..180; larger than hue_high: the range goes over 180")
+    hue_low: float = number(0, 180, "0..180; larger than hue_high: the range passes through 180")
     hue_high: float = number(0, 180, "0..180")
     saturation_low: float = number(0, 255, "0..255")
     value_low: float = number(0, 255, "0..255")
-    least_radius: float = number(0, 1000, "px; a smaller blob is no target")
+    least_radius: float = number(0, 1000, "px; smaller blobs are ignored")
 
     @property
     def colour(self) -> Colour:
-        """The mask's bounds."""
+        """The mask's colour bounds."""
         return Colour(self.hue_low, self.hue_high, self.saturation_low, self.value_low)
 
 
 @dataclass(frozen=True)
 class Blob:
-    """One connected piece of the mask, px: its box, and the circle round it."""
+    """One connected component of the mask: its bounding box and enclosing circle, px."""
 
     left: int
     top: int
     width: int
     height: int
-    column: float  # of the circle's middle
+    column: float  # of the circle's centre
     row: float
     radius: float
     area: float
 
     @property
     def fill(self) -> float:
-        """Share of its box that it covers."""
+        """The share of its box that it covers."""
         return self.area / (self.width * self.height)
 
 
 def red_mask(picture: np.ndarray, colour: Colour) -> np.ndarray:
-    """Mask (rows, columns), 0 or 255, of a BGR picture: what is of this colour, without specks."""
+    """Mask (rows, columns) of a BGR image: 255 where it has this colour, else 0; no specks."""
     hsv = cv2.cvtColor(picture, cv2.COLOR_BGR2HSV)
     low, high = colour.hue_low, colour.hue_high
     spans = [(low, high)] if low <= high else [(low, 180), (0, high)]
@@ -77,7 +77,7 @@ def red_mask(picture: np.ndarray, colour: Colour) -> np.ndarray:
 
 
 def find_blobs(mask: np.ndarray, least_radius: float) -> list[Blob]:
-    """All pieces with an enclosing circle larger than this (px), the largest area first."""
+    """All blobs with an enclosing circle larger than this radius (px), largest area first."""
     contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)
     found = []
     for contour in sorted(contours, key=cv2.contourArea, reverse=True):
@@ -89,12 +89,12 @@ def find_blobs(mask: np.ndarray, least_radius: float) -> list[Blob]:
 
 
 def focal_length(width: int, hfov: float) -> float:
-    """px, of a picture so wide (px) with this horizontal field of view (rad)."""
+    """Focal length, px, of an image of this width (px) and horizontal field of view (rad)."""
     return width / 2 / math.tan(hfov / 2)
 
 
 def bearing_of(blob: Blob, width: int, hfov: float) -> float:
-    """rad to the left of the camera's axis, half-way between the blob's two sides."""
+    """rad to the left of the camera's axis, midway between the blob's two sides."""
     focal = focal_length(width, hfov)
     left, right = width / 2 - blob.left, width / 2 - (blob.left + blob.width)
     return (math.atan2(left, focal) + math.atan2(right, focal)) / 2
@@ -102,10 +102,10 @@ def bearing_of(blob: Blob, width: int, hfov: float) -> float:
 
 def distance_of(blob: Blob, shape: tuple[int, int], hfov: float, radius: float,
                 height: float) -> float:
-    """m from the camera to the axis of an upright cylinder (radius, height, m), by its size.
+    """m from the camera to the axis of an upright cylinder (radius, height, m), from its size.
 
-    `shape`: the image's rows and columns. Occlusion, by the image's edge or an object in front,
-    makes the cylinder look smaller: so the larger of its two apparent sizes counts.
+    `shape`: the image's rows and columns. If the image's edge or an object hides a part of it, it
+    looks smaller, so the larger of its two apparent sizes counts.
     """
     focal = focal_length(shape[1], hfov)
     aslant = math.cos(bearing_of(blob, shape[1], hfov))
@@ -115,7 +115,7 @@ def distance_of(blob: Blob, shape: tuple[int, int], hfov: float, radius: float,
 
 
 def looks_upright(blob: Blob, shape: tuple[int, int], radius: float, height: float) -> bool:
-    """Whether the blob has such a cylinder's shape; not checked if the image's edge cuts it."""
+    """Whether the blob has the shape of such a cylinder; not checked if the image cuts it off."""
     rows, columns = shape
     if (blob.left <= EDGE_PX or blob.left + blob.width >= columns - EDGE_PX
             or blob.top <= EDGE_PX or blob.top + blob.height >= rows - EDGE_PX):
@@ -125,7 +125,7 @@ def looks_upright(blob: Blob, shape: tuple[int, int], radius: float, height: flo
 
 
 def split_off(mask: np.ndarray, blob: Blob, column: float, height: float) -> Blob:
-    """The part of a blob that is as high as the target, if a lower red object touches it.
+    """The part of a blob that is as tall as the target, if a lower red object touches it.
 
     `column` (px) is where the target's middle is expected, `height` (px) its height there.
     """

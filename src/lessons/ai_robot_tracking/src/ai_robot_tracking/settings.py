@@ -1,4 +1,4 @@
-"""Numbers from YAML files, checked against a dataclass: a mistake names file and key."""
+"""Numbers from YAML files, checked against a dataclass; errors name file and key."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ Settings = TypeVar("Settings")
 
 
 class SettingsError(Exception):
-    """One line: which file, which key, what is wrong."""
+    """One line with the file, the key, and the error."""
 
 
 def number(low: float, high: float, meaning: str) -> Any:
-    """A field of type float from `low` to `high`; the meaning says its unit."""
+    """A field of type float from `low` to `high`; the meaning has its unit."""
     return field(metadata={"low": low, "high": high, "meaning": meaning, "whole": False})
 
 
@@ -30,9 +30,9 @@ def count(low: int, high: int, meaning: str) -> Any:
 def load_settings(
     kind: type[Settings], path: Path, section: str, given: Mapping[str, object]
 ) -> Settings:
-    """The dataclass `kind` from the file's section; keys in `given` (ROS parameters) win.
+    """The dataclass `kind` from the file's section; keys in `given` (ROS parameters) override it.
 
-    Raises SettingsError for an unknown or missing key and for a value that does not fit.
+    Raises SettingsError for an unknown or missing key, or an invalid value.
     """
     values = _section(path, section)
     known = {entry.name: entry for entry in fields(kind)}
@@ -47,23 +47,23 @@ def load_settings(
 
 
 def refuse_unknown(keys: Iterable[object], known: Collection[str], where: str | Path) -> None:
-    """SettingsError for the first key that is not known."""
+    """SettingsError for the first unknown key."""
     for key in keys:
         if key not in known:
             raise SettingsError(f"{where}: unknown key {key!r:.80}; known: {', '.join(known)}")
 
 
 def refuse_missing(known: Iterable[str], keys: Collection[object], where: str | Path) -> None:
-    """SettingsError for the first known key that is not there."""
+    """SettingsError for the first missing key."""
     for key in known:
         if key not in keys:
             raise SettingsError(f"{where}: missing key '{key}'")
 
 
 def checked(entry: Field, value: object, what: str) -> float:
-    """The value within its field's bounds: a float, or an int where the field is a count.
+    """The value, if it is within its field's bounds: a float, or an int if the field is a count.
 
-    Else SettingsError; `what` names place and key in it.
+    Else SettingsError; `what` names file and key in it.
     """
     low, high, whole = (entry.metadata[key] for key in ("low", "high", "whole"))
     fits = isinstance(value, int if whole else int | float) and not isinstance(value, bool)

@@ -1,4 +1,4 @@
-"""Shared by both trackers: images in, commands out, and stopping whenever that is safer."""
+"""Shared by both trackers: images in, commands out, and a stop whenever that is safer."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from ai_robot_tracking.image_check import BadImage, ImageCheck, decode
 
 CHECK_PERIOD = 0.1   # s
 WARNING_PERIOD = 5   # s
-FLUSH_TIME = 0.2     # s, wall: rospy sends from threads of its own, which end with the process
+FLUSH_TIME = 0.2     # s, wall: rospy's threads need this to send before the process ends
 Command = tuple[float, float]  # m/s; rad/s, left positive
 
 
 class TrackerNode:
-    """One command on cmd_vel for each image of camera/rgb/image_raw; zero for an unusable one.
+    """One command on cmd_vel for each image on camera/rgb/image_raw; zero for an unusable one.
 
-    `drive(picture, time)` gets BGR (rows, columns, 3) and s, and says what to do; `mark(picture)`
-    draws what was seen, for ~annotated; `halt()` is called when the robot is made to stand.
+    `drive(picture, time)` gets BGR (rows, columns, 3) and s, and returns the command;
+    `mark(picture)` draws what was seen, for ~annotated; `halt()` is called on each stop.
     """
 
     def __init__(self, image_timeout: float, drive: Callable[[np.ndarray, float], Command],
@@ -34,7 +34,7 @@ class TrackerNode:
                  halt: Callable[[], None] = lambda: None):
         self.image_timeout = image_timeout
         self._drive, self._mark, self._halt = drive, mark, halt
-        self._lock = threading.Lock()  # images, e-stop and timer are on different threads
+        self._lock = threading.Lock()  # images, e-stop and timer run in different threads
         self._check, self._bridge = ImageCheck(), cv_bridge.CvBridge()
         self._told: Command = (0.0, 0.0)
         self._stopped, self._waiting = False, True
@@ -49,15 +49,15 @@ class TrackerNode:
 
     @property
     def lock(self) -> threading.Lock:
-        """The lock to hold while changing anything that `drive` uses."""
+        """Hold this lock while changing anything that `drive` uses."""
         return self._lock
 
     def _take_image(self, message: Image) -> None:
         with self._lock:
             if self._is_old(message.header.stamp):
-                return  # the time-out goes on
+                return  # the timeout keeps running
             if rospy.is_shutdown():
-                return  # it waited while _end() held the lock: no command after the last one
+                return  # _end() held the lock meanwhile: no command after the final one
             self._stamp, self._fresh = message.header.stamp, rospy.get_time()
             self._waiting = False
             picture = self._look(message)
@@ -73,11 +73,11 @@ class TrackerNode:
             self._annotated.publish(self._bridge.cv2_to_imgmsg(picture, "bgr8", message.header))
 
     def _is_old(self, stamp: rospy.Time) -> bool:
-        """Whether it is not newer than the last one; if much older, time was reset."""
+        """Whether the image is not newer than the last one; if much older, time was reset."""
         return bool(stamp) and rospy.Duration() <= self._stamp - stamp < rospy.Duration(1.0)
 
     def _look(self, message: Image) -> np.ndarray | None:
-        """The image, or None, with a warning, if it is unusable."""
+        """The image; None, with a warning, if it is unusable."""
         try:
             picture = decode(message.encoding, message.width, message.height, message.step,
                              message.data)
@@ -103,7 +103,7 @@ class TrackerNode:
             self._send((0.0, 0.0))
 
     def _take_stop(self, message: Bool) -> None:
-        """True: stand still until false comes, whatever the images show."""
+        """True: stop until false comes, whatever the images show."""
         with self._lock:
             if message.data != self._stopped:
                 rospy.logwarn("e-stop: standing" if message.data else "e-stop is over")

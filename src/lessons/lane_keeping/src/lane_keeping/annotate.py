@@ -1,4 +1,4 @@
-"""Draws what was seen and decided into the picture."""
+"""Draws what was seen and decided into the image."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ BGR = tuple[int, int, int]
 
 
 def annotate(image: np.ndarray, decision: Decision) -> np.ndarray:
-    """Draw into a BGR picture (h, w, 3), which is changed and returned."""
+    """Draw into a BGR image (h, w, 3), which is modified and returned."""
     view = decision.view
     if view is not None:
         cv2.line(image, (0, view.top), (view.width - 1, view.top), YELLOW, 1)
@@ -77,5 +77,5 @@ def _draw_crossing(image: np.ndarray, decision: Decision, view: RoadView) -> Non
 
 
 def _px(value: float) -> int:
-    """A drawable pixel, however far outside of the picture."""
+    """A coordinate that OpenCV can draw, however far outside the image."""
     return int(np.clip(round(value), -4000, 4000))

@@ -16,14 +16,14 @@ from lane_keeping.settings import Settings
 from lane_keeping.zebra import Zebra
 
 MEMORY = 1.0  # s for which an unseen zebra is remembered, e.g. if hidden by a person's legs
-AT_ZEBRA = 0.3  # m before and behind a zebra that count as part of it
-BODY = 0.12  # m from a person's feet to the body's side
+AT_ZEBRA = 0.3  # m before and behind a zebra that still belong to it
+BODY = 0.12  # m, half a person's width
 SIGHT_WITHOUT_ZEBRA = 1.5  # m ahead of the axle
-STANDING = 0.02  # m from the stopping point: near enough
+STANDING = 0.02  # m from the stopping point that is near enough
 
 
 class Crossing:
-    """Remembers the zebra ahead and who was on it last. Feed it every picture, in order."""
+    """Remembers the zebra ahead and when somebody was last on it; call it for each image."""
 
     def __init__(self, settings: Settings):
         self.settings = settings
@@ -42,10 +42,10 @@ class Crossing:
         stamp: float,
         speed: float,
     ) -> float:
-        """The speed limit in m/s; infinite if nobody is there.
+        """The speed limit in m/s; infinite if there is nobody.
 
-        people: (n, 2) m, ahead and left; lane_left: m to the left of the lane's centre line at so
-        many m ahead; speed: m/s driven since the last picture.
+        people: (n, 2) m, ahead and left; lane_left: how far left the lane's centre line is (m), by
+        distance ahead (m); speed: m/s driven since the last image.
         """
         self._remember(zebra, stamp, speed)
         crossing, slow = self._look_at(people, lane_left)
@@ -69,7 +69,7 @@ class Crossing:
             way = speed * (stamp - before)
             self.zebra = Zebra(self.zebra.near - way, self.zebra.far - way)
         if zebra is not None:
-            if zebra.reaches_robot and self.zebra is not None:  # its edge is out of sight below
+            if zebra.reaches_robot and self.zebra is not None:  # its near edge is below the image
                 zebra = Zebra(min(self.zebra.near, zebra.near), zebra.far)
             self.zebra, self._zebra_seen = zebra, stamp
         elif self.zebra is not None:

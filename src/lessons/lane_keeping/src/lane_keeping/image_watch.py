@@ -11,11 +11,11 @@ TO_BGR = {
     "mono8": cv2.COLOR_GRAY2BGR,
 }
 SMALLEST = 80, 60  # px
-EVERY = 8  # px; a picture without contrast on this grid is blank
+EVERY = 8  # px; an image without contrast on this grid is blank
 
 
 def mistake_in(encoding: str, width: int, height: int, step: int, length: int) -> str | None:
-    """What is wrong with an image message's fields, in a few words; None if nothing is."""
+    """The error in an image message's fields, in a few words; None if there is none."""
     if encoding not in CHANNELS:
         return f"encoding '{encoding}' is unknown here; known: {', '.join(CHANNELS)}"
     if width < SMALLEST[0] or height < SMALLEST[1]:
@@ -29,9 +29,9 @@ def mistake_in(encoding: str, width: int, height: int, step: int, length: int) -
 
 
 def picture_of(encoding: str, width: int, height: int, step: int, data: bytes) -> np.ndarray:
-    """(height, width, 3) uint8 BGR of an image message's fields, in which `mistake_in` finds none.
+    """(height, width, 3) uint8 BGR from an image message's fields, checked by `mistake_in`.
 
-    Debian 12's cv_bridge skews pictures whose rows are padded.
+    Not with cv_bridge: Debian 12's skews images with padded rows.
     """
     rows = np.frombuffer(data, np.uint8).reshape(height, step)[:, : width * CHANNELS[encoding]]
     pixels = np.ascontiguousarray(rows.reshape(height, width, CHANNELS[encoding]))
@@ -39,23 +39,23 @@ def picture_of(encoding: str, width: int, height: int, step: int, data: bytes) -
 
 
 def is_blank(image: np.ndarray, contrast: float) -> bool:
-    """Whether a picture (h, w, 3) shows nothing: its brightness hardly varies (of 255)."""
+    """Whether the brightness of an image (h, w, 3) hardly varies; `contrast` is of 255."""
     return float(image[::EVERY, ::EVERY].std(axis=(0, 1)).max()) < contrast
 
 
 class FrozenWatch:
-    """Detects that the camera repeats one image, byte by byte, while the robot should move."""
+    """Detects that the camera repeats the same image, byte by byte, while the robot should move."""
 
     def __init__(self, patience: float):
         self._patience = patience  # s
         self._image: np.ndarray | None = None
-        self._since = 0.0  # s, when this picture came first, or the robot was last told to stand
+        self._since = 0.0  # s, when this image first came, or the robot was last stopped
         self.frozen = False
 
     def see(self, image: np.ndarray, now: float, moving: bool) -> bool:
-        """Whether the picture is frozen. moving: whether the last command was to move.
+        """Whether the image is frozen. moving: whether the last command was to move.
 
-        A frozen picture stays so until another one comes: only then is the camera at work again.
+        It stays frozen until a different image comes: only then does the camera work again.
         """
         same = self._image is not None and np.array_equal(image, self._image)
         if not same or (not moving and not self.frozen) or now < self._since:

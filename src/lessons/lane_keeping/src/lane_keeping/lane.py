@@ -12,14 +12,14 @@ import numpy as np
 from lane_keeping.road_view import RoadView
 
 LEFT, RIGHT = 1.0, -1.0
-MIN_SPAN = 20  # rows that a line's pixels must cover to tell its direction
-QUADRATIC_SPAN = 80  # rows needed to tell a bend from a slant
-NARROWEST, WIDEST = 0.6, 1.7  # lane widths that two lines may be apart; bends look wider
+MIN_SPAN = 20  # rows that a line's pixels must span to show its direction
+QUADRATIC_SPAN = 80  # rows needed to distinguish a bend from a slanted line
+NARROWEST, WIDEST = 0.6, 1.7  # distance of two lines in lane widths; bends look wider
 
 
 @dataclass(frozen=True)
 class Side:
-    """One line of the lane: its curve, and the rows (first, last) in which it was seen."""
+    """One line of the lane: its curve, and the range of rows (first, last) in which it was seen."""
 
     curve: np.ndarray
     rows: tuple[float, float]
@@ -35,7 +35,7 @@ class Marks:
 
 @dataclass(frozen=True)
 class Lane:
-    """The lines that were seen, at least one, and the centre line; with what the method marked."""
+    """The lines that were seen, at least one, the centre line, and the method's marks."""
 
     left: Side | None
     right: Side | None
@@ -44,7 +44,7 @@ class Lane:
 
 
 def fit_side(points: np.ndarray) -> Side | None:
-    """A curve through (n, 2) pixels (column, row); None when they do not show a direction."""
+    """A curve through (n, 2) pixels (column, row); None if they do not show a direction."""
     if len(points) < 3:
         return None
     columns, rows = np.asarray(points, float).T
@@ -59,7 +59,7 @@ def fit_side(points: np.ndarray) -> Side | None:
 def make_lane(
     left: Side | None, right: Side | None, view: RoadView, marks: Marks = Marks()
 ) -> Lane | None:
-    """The lane between two lines, or beside one; None without any.
+    """The lane between two lines, or beside one; None without lines.
 
     Two lines that are too close or too far apart cannot be a lane: the longer one is used.
     """
@@ -79,15 +79,15 @@ def make_lane(
 
 
 def beside(side: Side, towards: float, view: RoadView) -> Side | None:
-    """The centre line half a lane beside a single line, measured square to it on the ground.
+    """The centre line half a lane beside a single line, measured perpendicular to it on the ground.
 
-    towards: LEFT when the centre is to the left of the line, else RIGHT.
+    towards: LEFT if the centre is to the left of the line, else RIGHT.
     """
     rows = np.linspace(*side.rows, 25)
     ground = view.to_ground(np.stack([np.polyval(side.curve, rows), rows], axis=1))
     along = np.gradient(ground, axis=0)
     along *= -1 / np.maximum(np.hypot(*along.T), 1e-9)[:, None]  # rows grow towards the robot
-    normal = np.stack([-along[:, 1], along[:, 0]], axis=1)  # to the left of the way ahead
+    normal = np.stack([-along[:, 1], along[:, 0]], axis=1)  # to the left of the direction ahead
     pixels = view.to_pixels(ground + towards * view.lane_width / 2 * normal)
     return fit_side(pixels[np.isfinite(pixels).all(axis=1)])
 

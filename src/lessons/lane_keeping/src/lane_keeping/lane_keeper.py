@@ -1,4 +1,4 @@
-"""Keeps a lane, image by image: detects, decides, and names the state."""
+"""Keeps the lane, image by image: detects, decides, and names the state."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LANE, PERSON, LOST, SEARCHING, STOPPED, BLANK, FROZEN = (
 
 @dataclass(frozen=True)
 class Decision:
-    """The command for one image, and its reasons."""
+    """The command for one image, and the reasons."""
 
     state: str
     speed: float = 0.0  # m/s
@@ -45,13 +45,13 @@ class LaneKeeper:
         self._crossing = Crossing(settings)
         self._frozen = FrozenWatch(settings.frozen_time)
         self._plan: Plan | None = None
-        self._planned = -math.inf  # s, when
+        self._planned = -math.inf  # s, when it was made
         self.last = Decision(STOPPED)
 
     def step(self, image: np.ndarray, stamp: float, now: float | None = None) -> Decision:
         """The decision for a BGR image (h, w, 3) uint8.
 
-        stamp: s, when it was taken; now: s, when it came, for a camera whose stamps stand still.
+        stamp: s, when it was taken; now: s, when it came, for a camera whose stamps do not advance.
         """
         stamp = stamp or now or 0.0  # 0: the camera sets no stamp
         moving = self.last.speed != 0 or self.last.turn != 0
@@ -64,7 +64,7 @@ class LaneKeeper:
         return self.last
 
     def stand(self) -> None:
-        """Take note that the robot was stopped from outside."""
+        """The robot was stopped from outside."""
         self.last = Decision(STOPPED)
 
     def _drive(self, image: np.ndarray, stamp: float) -> Decision:
@@ -85,7 +85,7 @@ class LaneKeeper:
         return Decision(state, speed, turn, found, view, self._crossing.zebra, people)
 
     def _follow(self, stamp: float, fresh: bool) -> tuple[str, float, float]:
-        """State, speed and turn for the last plan, which is of this picture if it is fresh."""
+        """State, speed and turn rate for the last plan; `fresh`: it is from this image."""
         settings, plan, age = self.settings, self._plan, stamp - self._planned
         if fresh:
             return LANE, plan.speed, plan.turn
@@ -98,7 +98,7 @@ class LaneKeeper:
 
 
 def _lane_left(plan: Plan | None, view: RoadView):
-    """How far left (m) of the robot's axis the lane's centre is, so many m ahead."""
+    """How far left of the robot's axis the lane's centre is, m, by distance ahead, m."""
     if plan is None:
         return lambda ahead: 0.0
     curve, row = plan.lane.centre.curve, plan.target[1]

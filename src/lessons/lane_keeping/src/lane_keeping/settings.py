@@ -12,11 +12,11 @@ import yaml
 
 
 class SettingsError(Exception):
-    """One line that names file (or parameters), key, and what is wrong."""
+    """One line that names the file (or parameters), the key, and the error."""
 
 
 def number(low: float, high: float, meaning: str) -> Any:
-    """A float within these bounds; the meaning says its unit."""
+    """A float within these bounds; the meaning has its unit."""
     return field(metadata={"low": low, "high": high, "meaning": meaning})
 
 
@@ -39,7 +39,7 @@ BINARISE = ("global_mean", "adaptive_mean", "relative_mean")
 
 @dataclass(frozen=True)
 class Settings:
-    """SI units where nothing else is said; a share is of 1; positions are from base_footprint."""
+    """SI units unless the name says otherwise; shares are of 1; positions from base_footprint."""
 
     method: str = choice(*METHODS)
 
@@ -49,42 +49,42 @@ class Settings:
     camera_hfov: float = number(0.3, 2.8, "rad, horizontal field of view")
     lane_width: float = number(0.1, 10, "m, between the middles of the two lines")
 
-    roi_share: float = number(0.2, 0.9, "share of the picture's rows, from below")
+    roi_share: float = number(0.2, 0.9, "share of the image's rows, from the bottom")
     binarise: str = choice(*BINARISE)
-    block_px: int = count(3, 401, "side of the square whose mean counts, odd")
-    adaptive_c: float = number(-128, 128, "how much darker than the mean of its block a line is")
+    block_px: int = count(3, 401, "px, side of the square for the local mean, odd")
+    adaptive_c: float = number(-128, 128, "how much darker than its block's mean a line is, of 255")
     relative_share: float = number(0.05, 1, "a line is darker than this share of its block's mean")
-    opening_px: int = count(1, 31, "side of the square of the opening")
+    opening_px: int = count(1, 31, "px, side of the square of the opening")
 
-    windows: int = count(3, 40, "how many windows from the bottom to the top")
-    margin_px: int = count(5, 300, "half a window's width")
-    min_pixels: int = count(1, 5000, "so many pixels move a window; fewer are no line")
+    windows: int = count(3, 40, "number of windows from bottom to top")
+    margin_px: int = count(5, 300, "px, half a window's width")
+    min_pixels: int = count(1, 5000, "pixels that move a window; fewer are no line")
 
-    look_ahead: float = number(0, 1, "share of the region's height, from above")
-    steer_gain: float = number(0, 20, "rad/s at an error of half the picture's width")
+    look_ahead: float = number(0, 1, "share of the region's height, from the top")
+    steer_gain: float = number(0, 20, "rad/s at an error of half the image's width")
     max_turn: float = number(0.1, 10, "rad/s")
     straight_speed: float = number(0, 5, "m/s")
     bend_speed: float = number(0, 5, "m/s")
-    bend_curvature: float = number(0, 1, "1/px, more is a bend")
-    bend_error: float = number(0, 1, "share of half the picture's width, more is a bend")
+    bend_curvature: float = number(0, 1, "1/px; more is a bend")
+    bend_error: float = number(0, 1, "share of half the image's width; more is a bend")
     pursuit_distance: float = number(0.1, 5, "m ahead of the axle, for pure_pursuit")
 
-    lost_time: float = number(0, 5, "s that the last plan is good for when no line is seen")
-    search_time: float = number(0, 60, "s of turning to where the lane was, then stand")
+    lost_time: float = number(0, 5, "s for which the last plan is used if no line is seen")
+    search_time: float = number(0, 60, "s of turning to where the lane was before it stops")
     search_turn: float = number(0, 5, "rad/s")
 
-    robot_front: float = number(0, 2, "m, the robot's front ahead of the axle")
-    zebra_gap: float = number(0, 3, "m between the front and a zebra with somebody on it")
-    person_gap: float = number(0, 3, "m between the front and somebody where no zebra is seen")
-    kerb: float = number(0, 2, "m beside the lines: whoever is there counts as crossing")
-    waiting: float = number(0, 5, "m beside the lines: whoever is there is passed slowly")
-    waiting_speed: float = number(0, 5, "m/s past somebody who waits")
+    robot_front: float = number(0, 2, "m from the axle to the robot's front")
+    zebra_gap: float = number(0, 3, "m between the robot's front and an occupied zebra")
+    person_gap: float = number(0, 3, "m between the robot's front and a person without zebra")
+    kerb: float = number(0, 2, "m beside the lines within which a person is crossing")
+    waiting: float = number(0, 5, "m beside the lines within which a person is passed slowly")
+    waiting_speed: float = number(0, 5, "m/s past a waiting person")
     braking: float = number(0.1, 20, "m/s^2")
-    clear_time: float = number(0, 2, "s without anybody before driving on")
+    clear_time: float = number(0, 2, "s without a person before driving on")
 
-    image_timeout: float = number(0.1, 5, "s without a picture, then stand")
-    frozen_time: float = number(0.1, 5, "s of one and the same picture while driving, then stand")
-    blank_contrast: float = number(0, 50, "of 255: a picture of less contrast is blank")
+    image_timeout: float = number(0.1, 5, "s without an image before it stops")
+    frozen_time: float = number(0.1, 5, "s of identical images while driving before it stops")
+    blank_contrast: float = number(0, 50, "of 255: an image with less contrast is blank")
 
     def __post_init__(self) -> None:
         if self.block_px % 2 == 0:
@@ -92,9 +92,9 @@ class Settings:
 
 
 def load_settings(path: str | Path, given: Mapping[str, object] | None = None) -> Settings:
-    """Settings from a YAML file; keys in `given`, the node's ROS parameters, win.
+    """Settings from a YAML file; keys in `given`, the node's ROS parameters, take precedence.
 
-    Whatever is wrong is one SettingsError.
+    Any error is a SettingsError.
     """
     values = read_table(Path(path))
     known = {entry.name: entry for entry in fields(Settings)}
@@ -114,7 +114,7 @@ def load_settings(path: str | Path, given: Mapping[str, object] | None = None) -
 
 
 def _checked(entry: Field, value: object, where: str) -> object:
-    """The value as this field has it; SettingsError if it cannot."""
+    """The value as this field's type; SettingsError if it is invalid."""
     rule, given = entry.metadata, reprlib.repr(value)[:80]
     if "names" in rule:
         if value not in rule["names"]:
@@ -133,7 +133,7 @@ def _checked(entry: Field, value: object, where: str) -> object:
 
 
 def read_table(path: Path) -> dict:
-    """The `key: value` lines of a YAML file, or SettingsError."""
+    """The `key: value` lines of a YAML file; SettingsError if it is invalid."""
     try:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
     except OSError as error:

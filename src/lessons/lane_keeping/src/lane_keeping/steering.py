@@ -1,4 +1,4 @@
-"""From a lane to speed and turn: the page's law on the picture, and pursuit on the ground."""
+"""From a lane to speed and turn rate: the tutorial's law in pixels, and pure pursuit in metres."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from lane_keeping.settings import Settings
 
 @dataclass(frozen=True)
 class Plan:
-    """What to do about a lane, and why."""
+    """The command for a lane, and the reasons."""
 
     lane: Lane
-    target: tuple[float, float]  # px, the point of the centre line that is steered to
-    error: float  # of half the picture's width, right positive
+    target: tuple[float, float]  # px, the centre line's point to steer to
+    error: float  # share of half the image's width, right positive
     curvature: float  # 1/px, of the centre line at the target
     speed: float  # m/s
     turn: float  # rad/s, left positive
@@ -30,13 +30,13 @@ def curvature_px(curve: np.ndarray, row: float) -> float:
 
 
 def cruise(error: float, curvature: float, settings: Settings) -> float:
-    """Speed in m/s: slower in bends, which show as curvature or as an error."""
+    """Speed in m/s: slower in bends, which show as curvature or as error."""
     bend = curvature > settings.bend_curvature or abs(error) > settings.bend_error
     return settings.bend_speed if bend else settings.straight_speed
 
 
 def steer_by_error(lane: Lane | None, view: RoadView, settings: Settings) -> Plan | None:
-    """The page's law: turn in proportion to the centre line's offset at the look-ahead row."""
+    """The tutorial's law: turn in proportion to the centre line's offset at the look-ahead row."""
     if lane is None:
         return None
     row = settings.look_ahead * view.rows
@@ -50,7 +50,7 @@ def steer_by_error(lane: Lane | None, view: RoadView, settings: Settings) -> Pla
 def steer_by_pursuit(
     lane: Lane | None, goal: tuple[float, float], view: RoadView, settings: Settings
 ) -> Plan | None:
-    """Pure pursuit: the arc that leads through a goal (ahead, left) in m on the ground."""
+    """Pure pursuit: the arc through a goal (ahead, left) in m on the ground."""
     if lane is None:
         return None
     ahead, left = goal

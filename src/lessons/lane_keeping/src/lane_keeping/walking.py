@@ -9,23 +9,23 @@ from enum import Enum
 import numpy as np
 
 CAR_FRONT, CAR_REAR = 0.20, 0.16  # m before and behind base_footprint
-BESIDE = 1.0  # m from the lane's middle: farther away the car is not on this road
-STANDS = 0.05  # m/s: slower and the car counts as standing
+BESIDE = 1.0  # m from the lane's middle: farther away, the car is not on this road
+STANDS = 0.05  # m/s: below this, the car counts as standing
 
 
 @dataclass(frozen=True)
 class Crossing:
-    """One zebra in the world: its middle, where the lane leads, and its measures."""
+    """One zebra in the world: its centre, the lane's heading, and its dimensions."""
 
     x: float
     y: float
     heading: float  # rad
     length: float  # along the road
-    kerb: float  # from the lane's middle: here a person looks
-    far: float  # from the lane's middle: here a person waits
+    kerb: float  # from the lane's middle, where a person looks
+    far: float  # from the lane's middle, where a person waits
 
     def within(self, x: float, y: float) -> tuple[float, float]:
-        """A place of the world as metres along the lane and to its left, from the middle."""
+        """A place in the world as metres along the lane and to its left, from the centre."""
         dx, dy = x - self.x, y - self.y
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         return cos * dx + sin * dy, cos * dy - sin * dx
@@ -33,17 +33,17 @@ class Crossing:
 
 @dataclass(frozen=True)
 class Habits:
-    """What is drawn anew for each walk, evenly between two bounds."""
+    """Behaviour of people; pairs are bounds of a uniform distribution, drawn for each walk."""
 
     pause: tuple[float, float] = (2.0, 8.0)  # between two walks
     speed: tuple[float, float] = (0.6, 1.2)
-    look: tuple[float, float] = (0.2, 0.8)  # how long a person looks at the kerb, at least
-    gap: float = 0.9  # nobody steps out while a driving car's front is nearer to the zebra
-    near: float = 0.0  # a walk begins only with a car so near or nearer; 0: whenever
+    look: tuple[float, float] = (0.2, 0.8)  # how long a person at least looks at the kerb
+    gap: float = 0.9  # nobody steps out while a moving car's front is nearer than this to the zebra
+    near: float = 0.0  # a walk only starts when the car is at most this near; 0: at any time
 
 
 class Stage(Enum):
-    """What a person is at."""
+    """What a person is doing."""
 
     WAITING = "waiting"
     COMING = "walking to the kerb"
@@ -52,19 +52,19 @@ class Stage(Enum):
 
 
 class Walker:
-    """One person, from side to side. The same seed and the same car give the same walks."""
+    """One person, walking from side to side. Same seed and same car: same walks."""
 
     def __init__(self, crossing: Crossing, habits: Habits, random: np.random.Generator):
         self._crossing, self._habits, self._random = crossing, habits, random
         self.stage = Stage.WAITING
-        self.side = -1  # where this walk began, or the next will: 1 is left of the lane
+        self.side = -1  # where this walk started, or the next will: 1 is left of the lane
         self._speed = self._until = self._trigger = 0.0
         self._now = 0.0
         self._draw(0.0)
 
     def step(self, now: float, place: tuple[float, float],
              car: tuple[float, float, float] | None) -> float:
-        """Speed to the left of the lane, m/s, from where the person is and the car: x, y, speed."""
+        """Speed to the lane's left, m/s; `place`: the person's x, y; `car`: x, y, speed."""
         if now < self._now:  # a simulation was reset
             self._draw(now)
         self._now = now
@@ -90,7 +90,7 @@ class Walker:
         self._trigger = self._random.uniform(habits.gap, max(habits.near, habits.gap))
 
     def _gap(self, car: tuple[float, float, float] | None) -> float:
-        """From the car's front to the zebra, below 0: on it; infinite behind it or elsewhere."""
+        """m from the car's front to the zebra; negative: on it; infinite: past it or elsewhere."""
         if car is None:
             return math.inf
         along, left = self._crossing.within(*car[:2])

@@ -1,4 +1,4 @@
-"""Finds a zebra crossing's white bars in a map of the road as seen from above."""
+"""Finds a zebra crossing's white bars in a bird's-eye view of the road."""
 
 from __future__ import annotations
 
@@ -9,32 +9,32 @@ import numpy as np
 
 from lane_keeping.road_view import RoadView
 
-NEAR, FAR, ASIDE = 0.45, 2.7, 0.7  # m that the map covers: ahead of the axle, and to either side
+NEAR, FAR, ASIDE = 0.45, 2.7, 0.7  # m covered by the view: ahead of the axle, and to either side
 PX_PER_M = 80
 NARROWEST_BAR, WIDEST_BAR = 0.05, 0.2  # m
 LEAST_LENGTH = 0.2  # m, of a bar and of a crossing
-CONTRAST = 0.15  # how much brighter than the road a bar is at least, as a share
+CONTRAST = 0.15  # least share by which a bar is brighter than the road
 LEAST_BARS = 3  # side by side
 
 
 @dataclass(frozen=True)
 class Zebra:
-    """Where a crossing begins and ends, in m ahead of the axle."""
+    """Where a crossing starts and ends, in m ahead of the axle."""
 
     near: float
     far: float
 
     @property
     def reaches_robot(self) -> bool:
-        """Whether it begins where the map begins, or nearer: then its near edge was not seen."""
+        """Whether it starts at the view's near end: then its near edge was not seen."""
         return self.near < NEAR + 2 / PX_PER_M
 
 
 def from_above(grey: np.ndarray, view: RoadView) -> np.ndarray | None:
-    """The road's brightness from above, far rows first, left columns first.
+    """The road's brightness seen from above, far rows first, left columns first.
 
-    grey: (h, w) uint8, the whole picture. NEAR, FAR, ASIDE and PX_PER_M say what is covered.
-    None for a camera that cannot see that at all.
+    grey: (h, w) uint8, the whole image. NEAR, FAR, ASIDE and PX_PER_M define the view. None if the
+    camera cannot see it.
     """
     size = (round(2 * ASIDE * PX_PER_M), round((FAR - NEAR) * PX_PER_M))
     ground = np.array([[FAR, ASIDE], [FAR, -ASIDE], [NEAR, ASIDE], [NEAR, -ASIDE]])
@@ -47,7 +47,7 @@ def from_above(grey: np.ndarray, view: RoadView) -> np.ndarray | None:
 
 
 def bars(road: np.ndarray) -> np.ndarray:
-    """255 where the road is brighter than beside, in strips that lead along the road."""
+    """255 where the road is brighter than beside it, in strips along the road."""
     across = np.ones((1, round(WIDEST_BAR * PX_PER_M)), np.uint8)
     level = cv2.morphologyEx(road, cv2.MORPH_OPEN, across)
     mask = cv2.compare(road, cv2.convertScaleAbs(level, alpha=1 + CONTRAST, beta=4), cv2.CMP_GT)

@@ -1,4 +1,4 @@
-"""Lesson 4: stop before the crossing's bar until it opens."""
+"""Lesson 4: stop at the level crossing until its bar opens."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import numpy as np
 
 from learning_autorace.calibration import Calibration, to_pixel
 
-RED = (0, 150, 16), (6, 255, 255)  # hue 0..180, saturation, value, from, to; it may lie in shade
-LONG = 0.12  # m, the bar's red piece
-LYING = 1.8  # at least so much wider than high
+RED = (0, 150, 16), (6, 255, 255)  # hue 0..180, saturation, value: from, to; it may be in shade
+LONG = 0.12  # m, length of the bar's red part
+LYING = 1.8  # width / height, at least
 STOP = 0.35  # m from the camera
 PASSED = 0.6  # m, driven since the bar was last seen
 
 
 def bar_distance(image: np.ndarray, calibration: Calibration) -> float | None:
-    """How far a closed bar is, m from the camera; None: there is none."""
+    """Distance of a closed bar from the camera, m; None: there is none."""
     height, width = image.shape[:2]
     columns, rows = to_pixel(np.ones(4), np.array([0.6, -0.6, 0.0, 0.0]),
                              np.array([0.0, 0.0, 0.25, -0.25]), width, height, calibration)
@@ -30,23 +30,23 @@ def bar_distance(image: np.ndarray, calibration: Calibration) -> float | None:
     for _, _, wide, high, area in cv2.connectedComponentsWithStats(cv2.inRange(hsv, *RED))[2][1:]:
         if wide > LYING * high and area > 0.5 * wide * high and wide > width / 50:
             rad = wide * 2 / width * calibration.divisor * math.tan(
-                calibration.hfov / 2 / calibration.divisor)  # near the middle of the picture
+                calibration.hfov / 2 / calibration.divisor)  # near the middle of the image
             found.append(LONG / rad)
     return min(found, default=None)
 
 
 class Bar:
-    """Stands before a closed bar; over when the robot has gone on for a while without one."""
+    """Stops at a closed bar; over when the robot has driven on for PASSED without seeing one."""
 
     name = "bar"
 
     def __init__(self, calibration: Calibration):
         self._calibration = calibration
-        self._last: tuple[float, float] | None = None  # where the robot stood before it
+        self._last: tuple[float, float] | None = None  # where the robot stopped at it
         self.done = False
 
     def step(self, seen) -> tuple[float, float] | None:
-        """Stand still, or None: drive on in the lane."""
+        """A stop, or None: keep the lane."""
         distance = bar_distance(seen.image, self._calibration)
         if distance is not None and distance < STOP:
             self._last = seen.pose[:2]

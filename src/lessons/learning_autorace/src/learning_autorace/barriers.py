@@ -1,4 +1,4 @@
-"""The building site: barriers stand in the lane, now left, now right; the laser sees them."""
+"""The construction site: barriers in the lane, left and right in turn, seen by the laser."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ CLEAR = 0.12  # m from the robot's middle
 
 
 def between(aim: float, points: np.ndarray) -> float:
-    """The lane's middle, m to the left, moved so far that the robot clears what stands beside it.
+    """The lane's middle, m to the left, shifted so that the robot clears the barriers beside it.
 
-    `points` (N, 2): laser, m, x ahead and y left of the base.
+    `points` (N, 2): of the laser, m, x ahead and y left of the base.
     """
     aside = points[(points[:, 0] > -LENGTH) & (points[:, 0] < REACH), 1]
     left = aside[(aside > aim) & (aside < aim + BESIDE)]

@@ -1,4 +1,4 @@
-"""Lesson 1: from the camera's picture to the floor seen from above."""
+"""Lesson 1: from the camera's image to the ground seen from above."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 import yaml
 
-# Key: least and most. The lane is looked for 0.2 m ahead, which the view has to show.
+# Bounds by key. The lane is searched for 0.2 m ahead, which the view has to include.
 LIMITS = {
     "lens": {"hfov": (0.1, 6.2), "divisor": (1.0, 10.0)},
     "camera": {"forward": (-1.0, 1.0), "height": (0.01, 2.0), "pitch": (-1.5, 1.5)},
@@ -19,11 +19,11 @@ LIMITS = {
              "px_per_m": (20, 1000)},
 }
 TOP_LIMITS = {"clip_percent": (0.0, 20.0), "lane_width": (0.05, 1.0)}
-MOST_GAIN = 2.0  # a picture of nothing bright stays dark
+MOST_GAIN = 2.0  # so that an image of nothing bright stays dark
 
 
 class CalibrationError(ValueError):
-    """One line: file, key, and what is wanted there."""
+    """One line with the file, the key, and what is expected there."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Calibration:
 
 
 def load_calibration(path: Path) -> Calibration:
-    """The file's numbers; CalibrationError if it cannot be read or a number is missing or wild."""
+    """The file's numbers; CalibrationError if unreadable, or one is missing or out of range."""
     try:
         values = yaml.safe_load(path.read_text(encoding="utf-8"))
     except Exception as error:  # PyYAML also raises KeyError, IndexError and more
@@ -70,7 +70,7 @@ def _numbers(path: Path, values: object, limits: dict, part: str = "") -> dict[s
 
 def to_pixel(forward: np.ndarray, left: np.ndarray, up: np.ndarray, width: int, height: int,
              calibration: Calibration) -> tuple[np.ndarray, np.ndarray]:
-    """Column and row in a picture of that size of points that lie so far from the camera, m."""
+    """Columns and rows, in an image of that size, of points this far (m) from the camera."""
     cos, sin = math.cos(calibration.pitch), math.sin(calibration.pitch)
     ahead, above = cos * forward - sin * up, cos * up + sin * forward
     aside = np.hypot(left, above)
@@ -81,7 +81,7 @@ def to_pixel(forward: np.ndarray, left: np.ndarray, up: np.ndarray, width: int, 
 
 
 def floor_maps(width: int, height: int, calibration: Calibration) -> tuple[np.ndarray, np.ndarray]:
-    """For each pixel of the view its column and row in the picture, for cv2.remap."""
+    """For each pixel of the view, its column and row in the image, for cv2.remap."""
     step = 1 / calibration.px_per_m
     x = np.arange(calibration.far - step / 2, calibration.near, -step)
     y = np.arange(calibration.half_width - step / 2, -calibration.half_width, -step)
@@ -92,6 +92,6 @@ def floor_maps(width: int, height: int, calibration: Calibration) -> tuple[np.nd
 
 
 def compensate(view: np.ndarray, clip_percent: float) -> np.ndarray:
-    """The view with its brightest pixels made white, whatever the light."""
+    """The view, brightened so that its brightest pixels become white, whatever the light."""
     bright = np.percentile(view.max(axis=2), 100 - clip_percent)
     return cv2.convertScaleAbs(view, alpha=min(255 / max(bright, 1.0), MOST_GAIN))

@@ -1,4 +1,4 @@
-"""The whole course: one mission after the other, the lane in between."""
+"""The whole course: one mission after another, and lane keeping in between."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from learning_autorace.calibration import Calibration
 from learning_autorace.lane import LaneKeeper, rows_at
 
 RED = (0, 150, 120), (8, 255, 255)  # hue 0..180, saturation, value: from, to
-NEAR, DEEP = 0.15, 0.06  # m: where the red line is looked for
-LINE = 0.15  # of the view's width
+NEAR, DEEP = 0.15, 0.06  # m: where the red line is searched for
+LINE = 0.15  # share of the view's width
 
 
 class Finish:
-    """Stands still for good once the red line is reached; never over."""
+    """Stops for good at the red line; never over."""
 
     name, done = "finish", False
 
@@ -25,7 +25,7 @@ class Finish:
         self._calibration, self._there = calibration, False
 
     def step(self, seen) -> tuple[float, float] | None:
-        """Stand still, or None: keep the lane."""
+        """A stop, or None: keep the lane."""
         band = seen.view[rows_at(self._calibration, NEAR, DEEP)]
         red = cv2.inRange(cv2.cvtColor(band, cv2.COLOR_BGR2HSV), *map(np.array, RED)) > 0
         self._there = self._there or red.any(axis=0).mean() > LINE
@@ -33,8 +33,8 @@ class Finish:
 
 
 class Course:
-    """A list of missions. The first may command, or the second, if the first had nothing to do:
-    a bar that is open, for example. Otherwise the robot keeps its lane."""
+    """A list of missions. The first one commands, or the second, in case the first has nothing to
+    do, such as an open bar. If neither commands, the robot keeps the lane."""
 
     def __init__(self, calibration: Calibration, missions: Sequence[type]):
         self._missions = [mission(calibration) for mission in missions]
@@ -42,11 +42,11 @@ class Course:
 
     @property
     def mission(self) -> str:
-        """The name of the one that is next or under way; lane: none is left."""
+        """The name of the current or next mission; "lane" if none is left."""
         return self._missions[0].name if self._missions else "lane"
 
     def __call__(self, seen) -> tuple[float, float]:
-        """Speed in m/s and turn in rad/s."""
+        """Speed in m/s and turn rate in rad/s."""
         command = None
         for number, mission in enumerate(self._missions[:2]):
             command = mission.step(seen)
@@ -55,6 +55,6 @@ class Course:
                 break
         self._missions = [each for each in self._missions if not each.done]
         if command and any(command):
-            self._lane.reset()  # the robot is elsewhere afterwards
+            self._lane.reset()  # afterwards the robot is elsewhere
         aim = between(self._lane.look(seen.view), seen.points)
         return command or self._lane.steer(aim, seen.time)

@@ -11,23 +11,23 @@ from learning_autorace.calibration import Calibration
 
 YELLOW = (18, 90, 90), (38, 255, 255)  # hue 0..180, saturation, value: from, to
 WHITE = (0, 0, 140), (180, 60, 255)
-AHEAD, BAND = 0.20, 0.02  # m: where the lane is looked for, and how deep
-WIDEST = 0.10  # m: what is wider is no line along the lane
+AHEAD, BAND = 0.20, 0.02  # m: where the lane is searched for, and over what depth
+WIDEST = 0.10  # m: anything wider is not a line along the lane
 NEAR_EXPECTED = 0.13  # m
 SPEED, SLOW = 0.15, 0.06  # m/s
-KP, KD = 1.0, 0.05  # of the arc to the aim; s
+KP, KD = 1.0, 0.05  # gain on the arc to the aim; s
 MOST_TURN = 1.5  # rad/s
 
 
 @dataclass(frozen=True)
 class Lane:
-    """The lines' places AHEAD of the base, m to the left; None: not seen."""
+    """The lines' positions AHEAD of the base, m to the left; None: not seen."""
 
     yellow: float | None
     white: float | None
 
     def centre(self, width: float) -> float | None:
-        """The middle between them, or half a lane beside the one that is seen."""
+        """The middle between them, or half a lane beside the only one seen."""
         middles = [line + side * width / 2 for line, side in ((self.yellow, -1), (self.white, 1))
                    if line is not None]
         return sum(middles) / len(middles) if middles else None
@@ -41,7 +41,7 @@ def rows_at(calibration: Calibration, ahead: float, deep: float) -> slice:
 
 def find_line(view: np.ndarray, colour: tuple, expected: float, calibration: Calibration
               ) -> float | None:
-    """Where a line of that colour is, m to the left: the one that is nearest to `expected`."""
+    """The position, m to the left, of the line of this colour that is nearest to `expected`."""
     band = view[rows_at(calibration, AHEAD, BAND)]
     hsv = cv2.cvtColor(band, cv2.COLOR_BGR2HSV)
     there = cv2.inRange(hsv, *map(np.array, colour)).mean(axis=0) > 60
@@ -56,26 +56,26 @@ def find_line(view: np.ndarray, colour: tuple, expected: float, calibration: Cal
 
 
 def find_lane(view: np.ndarray, expected: float, calibration: Calibration) -> Lane:
-    """Both lines, of a lane whose middle is expected there, m to the left."""
+    """Both lines of the lane whose middle is expected there, m to the left."""
     half = calibration.lane_width / 2
     return Lane(find_line(view, YELLOW, expected + half, calibration),
                 find_line(view, WHITE, expected - half, calibration))
 
 
 class LaneKeeper:
-    """PD on the place of the lane's middle."""
+    """PD control on the position of the lane's middle."""
 
     def __init__(self, calibration: Calibration):
         self._calibration = calibration
         self.reset()
 
     def reset(self) -> None:
-        """Straight ahead, nothing known."""
-        self.centre, self.unseen = 0.0, 0  # m; pictures without a lane
+        """Forget the lane: assume that it is straight ahead."""
+        self.centre, self.unseen = 0.0, 0  # m; number of images without a lane
         self._last: tuple[float, float] | None = None  # m, s
 
     def look(self, view: np.ndarray) -> float:
-        """The lane's middle AHEAD, m to the left; the last one if none is seen."""
+        """The lane's middle AHEAD, m to the left; the last one if it is not seen."""
         centre = find_lane(view, self.centre, self._calibration).centre(
             self._calibration.lane_width)
         self.unseen = 0 if centre is not None else self.unseen + 1
@@ -83,7 +83,7 @@ class LaneKeeper:
         return self.centre
 
     def steer(self, aim: float, time: float) -> tuple[float, float]:
-        """Speed in m/s and turn in rad/s towards an aim, m to the left, at this time in s."""
+        """Speed in m/s and turn rate in rad/s towards an aim, m to the left, at this time in s."""
         change = 0.0
         if self._last and time > self._last[1]:
             change = (aim - self._last[0]) / (time - self._last[1])

@@ -31,18 +31,18 @@ LASER_FORWARD = -0.032  # m, from base_footprint
 
 @dataclass
 class Seen:
-    """The robot's sensor data when an image comes."""
+    """The robot's sensor data at an image's arrival."""
 
     time: float  # s
     image: np.ndarray  # (h, w, 3) BGR
-    view: np.ndarray  # the floor from above, BGR, compensated
-    # (N, 2) m, what the laser met: x ahead and y left of the base
+    view: np.ndarray  # the ground from above, BGR, compensated
+    # (N, 2) m, the laser's hits: x ahead and y left of the base
     points: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))
     pose: tuple[float, float, float] = (0.0, 0.0, 0.0)  # odometry: x, y in m, yaw in rad
 
 
 def laser_points(scan: LaserScan) -> np.ndarray:
-    """(N, 2) m, x ahead and y left of base_footprint, of what the laser met."""
+    """(N, 2) m, x ahead and y left of base_footprint: the laser's hits."""
     ranges = np.array(scan.ranges)
     angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
     met = (ranges >= scan.range_min) & (ranges < scan.range_max)
@@ -51,7 +51,7 @@ def laser_points(scan: LaserScan) -> np.ndarray:
 
 
 class Node:
-    """Calls `drive` with each picture; it returns speed in m/s and turn in rad/s."""
+    """Calls `drive` for each image; it returns speed in m/s and turn rate in rad/s."""
 
     def __init__(self, calibration: Calibration, drive: Callable[[Seen], tuple[float, float]]):
         self._calibration, self._drive = calibration, drive
@@ -74,7 +74,7 @@ class Node:
     def _take_image(self, message: Image) -> None:
         try:
             image = self._bridge.imgmsg_to_cv2(message, desired_encoding="bgr8")
-        except (TypeError, ValueError) as error:  # CvBridgeError is one; too few bytes, huge sizes
+        except (TypeError, ValueError) as error:  # CvBridgeError; too few bytes, huge sizes
             rospy.logwarn_throttle(5.0, f"an image that cannot be used: {error}")
             return
         if self._maps is None:
@@ -87,15 +87,15 @@ class Node:
         self._commands.publish(command)
 
     def stop(self) -> None:
-        """Stop before leaving: the last command stands until the next one."""
+        """Stop before exiting: the robot keeps following the last command."""
         self._images.unregister()
         for _ in range(3):
             self._commands.publish(Twist())
-            time.sleep(0.1)  # s, on the wall: simulated time may stand still
+            time.sleep(0.1)  # s of wall time: simulated time may be paused
 
 
 def calibration_of_parameter() -> Calibration:
-    """The file of ~calibration, or config/camera.yaml; a mistake in it ends the program."""
+    """From the file in ~calibration, or config/camera.yaml; an error in it ends the program."""
     usual = Path(rospkg.RosPack().get_path("learning_autorace")) / "config" / "camera.yaml"
     try:
         return load_calibration(Path(rospy.get_param("~calibration", str(usual))))
@@ -104,7 +104,7 @@ def calibration_of_parameter() -> Calibration:
 
 
 def run(name: str, make: Callable[[Calibration], Callable[[Seen], tuple[float, float]]]) -> None:
-    """Run a node, until Ctrl-C, that drives with what `make` returns for the calibration."""
+    """Run a node until Ctrl-C that drives with the function that `make` returns."""
     rospy.init_node(name)
     calibration = calibration_of_parameter()
     node = Node(calibration, make(calibration))

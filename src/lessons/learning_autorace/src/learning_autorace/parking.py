@@ -1,4 +1,4 @@
-"""Lesson 6: turn off to the car park, find the free bay by laser, in, out, and back to the lane."""
+"""Lesson 6: drive into the car park, find the free bay by laser, park, and return to the lane."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 from learning_autorace.calibration import Calibration
 from learning_autorace.lane import WHITE
 
-BESIDE = 0.19, 0.36  # m to the left: where the broken lines of the way in are seen
-APART = 0.25  # m, between those lines
-IN = 0.947  # m from the lane's middle to the bays' middle
-SIDEWAYS = 0.275  # m from the way's middle to a bay's middle
+BESIDE = 0.19, 0.36  # m to the left: where the broken lines of the entrance are seen
+APART = 0.25  # m between those lines
+IN = 0.947  # m from the lane's middle to the bays' centres
+SIDEWAYS = 0.275  # m from the entrance's middle to a bay's centre
 BAY = 0.16  # m, half a bay
 LOOK, PARKED = 0.5, 1.5  # s
 SPEED, TURN = 0.12, 0.7  # m/s, rad/s
@@ -21,7 +21,7 @@ NEAR_PLACE, NEAR_ANGLE = 0.008, 0.02  # m, rad
 
 
 def way_in(view: np.ndarray, calibration: Calibration) -> float | None:
-    """How far ahead of the base the middle of the way into the car park is, m; None: not seen."""
+    """How far ahead of the base the middle of the car park's entrance is, m; None: not seen."""
     columns = [round((calibration.half_width - y) * calibration.px_per_m) for y in BESIDE[::-1]]
     hsv = cv2.cvtColor(view[:, columns[0]:columns[1]], cv2.COLOR_BGR2HSV)
     there = cv2.inRange(hsv, *map(np.array, WHITE)).mean(axis=1) > 50
@@ -32,7 +32,7 @@ def way_in(view: np.ndarray, calibration: Calibration) -> float | None:
 
 
 def free_side(points: np.ndarray) -> int:
-    """1: the left bay is free, -1: the right one; the robot stands between them."""
+    """1: the left bay is free, -1: the right one; the robot is between them."""
     inside = np.abs(points[:, 0]) < BAY
     left = np.sum(inside & (np.abs(points[:, 1] - SIDEWAYS) < BAY))
     right = np.sum(inside & (np.abs(points[:, 1] + SIDEWAYS) < BAY))
@@ -40,23 +40,23 @@ def free_side(points: np.ndarray) -> int:
 
 
 class Parking:
-    """A list of moves (turn to a heading, go so far, wait), done one by one by odometry."""
+    """A list of moves (turn to a heading, drive a distance, wait), done one by one by odometry."""
 
     name = "parking"
 
     def __init__(self, calibration: Calibration):
         self._calibration = calibration
-        self._moves: list[tuple[str, float]] | None = None  # None: the way in was not seen yet
-        self._from: tuple[float, ...] | None = None  # s, x, y, where the move began
+        self._moves: list[tuple[str, float]] | None = None  # None: the entrance was not seen yet
+        self._from: tuple[float, ...] | None = None  # s, x, y at the start of the move
         self.done = False
 
     def step(self, seen) -> tuple[float, float] | None:
-        """The move that is under way, or None: keep the lane."""
+        """The current move's command, or None: keep the lane."""
         if self._moves is None:
             ahead = way_in(seen.view, self._calibration)
             if ahead is None:
                 return None
-            self._heading = seen.pose[2]  # the robot has followed a straight lane so far
+            self._heading = seen.pose[2]  # the lane was straight so far
             self._into = self._heading + math.pi / 2
             self._moves = [("go", ahead), ("turn", self._into), ("go", IN), ("look", LOOK)]
         if not self._moves:
@@ -74,7 +74,7 @@ class Parking:
         return None if abs(left) < NEAR_ANGLE else (0.0, max(-TURN, min(TURN, 2.0 * left)))
 
     def _go(self, seen, way: float) -> tuple[float, float] | None:
-        """Along the heading of the last turn, backwards if `way` is negative."""
+        """Drive along the heading of the last turn, backwards if `way` is negative."""
         heading = self._heading
         x, y = seen.pose[0] - self._from[1], seen.pose[1] - self._from[2]
         cos, sin = math.cos(heading), math.sin(heading)
@@ -88,7 +88,7 @@ class Parking:
         return (0.0, 0.0) if seen.time < self._from[0] + seconds else None
 
     def _look(self, seen, seconds: float) -> tuple[float, float] | None:
-        """Wait for a scan from here, then add the moves into the free bay and out again."""
+        """Wait for a scan from here, then add the moves into the free bay and back out."""
         waits = self._wait(seen, seconds)
         if not waits:
             side = free_side(seen.points) * math.pi / 2

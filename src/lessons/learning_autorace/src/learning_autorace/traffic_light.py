@@ -9,17 +9,17 @@ import numpy as np
 
 from learning_autorace.calibration import Calibration, to_pixel
 
-# A lit lamp: hue 0..180 from, to; it is the brightest and purest colour there is.
+# A lit lamp: hue 0..180 from, to; its colour is the brightest and most saturated of all.
 HUES = {"red": (0, 6), "yellow": (25, 35), "green": (50, 70)}
 LEAST = 200, 200  # saturation, value
-LEAST_AREA = 60  # px of a picture 320 px wide: the light is nearer than 0.8 m
-ROUND = 0.6, 1.6  # width by height
-LEFT, RIGHT = math.radians(60), math.radians(10)  # beside the lane, before the robot
+LEAST_AREA = 60  # px of an image 320 px wide: the light is nearer than 0.8 m
+ROUND = 0.6, 1.6  # width / height
+LEFT, RIGHT = math.radians(60), math.radians(10)  # beside the lane, ahead of the robot
 HIGHEST, LOWEST = math.radians(55), math.radians(20)  # above and below the horizon
 
 
 def window(width: int, height: int, calibration: Calibration) -> tuple[slice, slice]:
-    """Rows and columns of the picture in which a light can be that has yet to be passed."""
+    """Rows and columns of the image that can show a light that is still ahead."""
     forward, left, up = np.cos([LEFT, RIGHT, HIGHEST, LOWEST]), np.zeros(4), np.zeros(4)
     left[:2] = math.sin(LEFT), -math.sin(RIGHT)
     up[2:] = math.sin(HIGHEST), -math.sin(LOWEST)
@@ -28,7 +28,7 @@ def window(width: int, height: int, calibration: Calibration) -> tuple[slice, sl
 
 
 def lit_lamp(image: np.ndarray, calibration: Calibration) -> str | None:
-    """red, yellow or green: the largest round spot of a lamp's colour; None: there is none."""
+    """The largest round blob of a lamp's colour: red, yellow, green, or None."""
     hsv = cv2.cvtColor(image[window(image.shape[1], image.shape[0], calibration)],
                        cv2.COLOR_BGR2HSV)
     least_area = LEAST_AREA * (image.shape[1] / 320) ** 2
@@ -42,7 +42,7 @@ def lit_lamp(image: np.ndarray, calibration: Calibration) -> str | None:
 
 
 class TrafficLight:
-    """Holds the robot while red or yellow is lit; over once green was seen and has gone by."""
+    """Stops the robot while red or yellow is lit; over once green was seen and passed."""
 
     name = "traffic light"
 
@@ -51,7 +51,7 @@ class TrafficLight:
         self.done = False
 
     def step(self, seen) -> tuple[float, float] | None:
-        """Stand still, or None: drive on in the lane."""
+        """A stop, or None: keep the lane."""
         lamp = lit_lamp(seen.image, self._calibration)
         self.done = self._green and lamp is None
         self._green = lamp == "green" or (self._green and lamp is None)

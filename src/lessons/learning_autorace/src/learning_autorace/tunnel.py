@@ -1,4 +1,4 @@
-"""Lesson 5: no lines in the tunnel; follow the wall on the right by laser, to the exit."""
+"""Lesson 5: the tunnel has no lines; follow the wall on the right by laser to the exit."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 from learning_autorace.calibration import Calibration
 from learning_autorace.lane import WHITE, YELLOW, find_line
 
-WALL = 0.21  # m, wanted on the right
-FRONT = 0.34  # m: turn left when the way ahead is no longer
+WALL = 0.21  # m, wanted distance on the right
+FRONT = 0.34  # m: turn left if less is free ahead
 SPEED, TURN = 0.12, 0.8  # m/s, rad/s
 KP, KD = 5.0, 1.5  # rad/s per m of distance, and per rad of heading to the wall
-BEFORE = 4  # pictures without a lane, then it is a tunnel
-EXIT = 3  # pictures with both lines, then it is over
+BEFORE = 4  # images without a lane before it counts as a tunnel
+EXIT = 3  # images with both lines before it is over
 
 
 def distance(points: np.ndarray, towards: float, width: float = 0.35) -> float:
-    """The least distance, m, of what lies within so many rad about a direction, rad to the left."""
+    """The least distance, m, in a sector of `width` rad around a direction, rad to the left."""
     if not len(points):
         return math.inf
     angles = np.arctan2(points[:, 1], points[:, 0]) - towards
@@ -27,7 +27,7 @@ def distance(points: np.ndarray, towards: float, width: float = 0.35) -> float:
 
 
 def along_wall(points: np.ndarray) -> tuple[float, float]:
-    """Speed in m/s and turn in rad/s that keep WALL on the right; points as of the laser."""
+    """Speed in m/s and turn rate in rad/s that keep the wall at WALL on the right."""
     ahead = points[(points[:, 0] > 0) & (np.abs(points[:, 1]) < 0.12), 0].min(initial=math.inf)
     if ahead < FRONT:
         return 0.0 if ahead < 0.2 else SPEED / 2, TURN
@@ -40,7 +40,7 @@ def along_wall(points: np.ndarray) -> tuple[float, float]:
 
 
 class Tunnel:
-    """From where the lane ends to where it begins again."""
+    """From where the lane ends to where it starts again."""
 
     name = "tunnel"
 
@@ -50,7 +50,7 @@ class Tunnel:
         self.done = False
 
     def step(self, seen) -> tuple[float, float] | None:
-        """Along the wall, or None: there is a lane."""
+        """Follow the wall, or None: keep the lane."""
         half = self._calibration.lane_width / 2
         lines = [find_line(seen.view, colour, side * half, self._calibration) is not None
                  for colour, side in ((YELLOW, 1), (WHITE, -1))]

@@ -1,4 +1,4 @@
-"""A hall with columns in it, drawn by a number: every gap is wide enough for the waffle."""
+"""A hall with columns, generated from a seed: every gap is wide enough for the waffle."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from collections.abc import Callable
 
 import numpy as np
 
-LENGTH, WIDTH = 10.0, 3.0  # m; it begins 1 m behind the start, whose axis is its middle
+LENGTH, WIDTH = 10.0, 3.0  # m; it begins 1 m behind the start, and its middle is the start's x axis
 FINISH = 8.0  # m along the hall
-FIRST, LAST = 1.2, 7.2  # m along the hall, of the columns' middles
+FIRST, LAST = 1.2, 7.2  # m along the hall, of the columns' centres
 RADIUS, HEIGHT, WALL = 0.15, 0.5, 0.1  # m
-GAP = 0.7  # m of air between two columns, and between a column and a wall
+GAP = 0.7  # m of space between two columns, and between a column and a wall
 COLUMNS, TRIES = 12, 500
-LASER, SEES = -0.064, 3.5  # m: the waffle's laser ahead of its axle; how far it sees
+LASER, SEES = -0.064, 3.5  # m: the waffle's laser ahead of its axle; its range
 ANGLES = np.radians(np.arange(360.0))  # rad, of its beams
-PERIOD, CLEAR = 0.2, 0.21  # s from scan to scan; m, of the circle round the waffle's body
+PERIOD, CLEAR = 0.2, 0.21  # s between scans; m, radius of the circle round the waffle's body
 
 
 def columns(seed: int) -> np.ndarray:
-    """(N, 2) m, the middles of the hall's columns; the same for the same number."""
+    """(N, 2) m, the centres of the hall's columns; the same for the same seed."""
     random = np.random.default_rng(seed)
     side = WIDTH / 2 - RADIUS - GAP
     found: list[np.ndarray] = []
@@ -31,7 +31,7 @@ def columns(seed: int) -> np.ndarray:
 
 
 def scan(pose: tuple[float, float, float], columns: np.ndarray) -> np.ndarray:
-    """(360,) m: what the laser sees with the axle at x, y (m), yaw (rad); inf beyond SEES."""
+    """(360,) m: the laser's ranges with the axle at x, y (m), yaw (rad); inf beyond SEES."""
     x, y, yaw = pose
     x, y = x + LASER * np.cos(yaw), y + LASER * np.sin(yaw)
     rays = np.stack([np.cos(ANGLES + yaw), np.sin(ANGLES + yaw)], axis=1)
@@ -48,9 +48,9 @@ def scan(pose: tuple[float, float, float], columns: np.ndarray) -> np.ndarray:
 
 def drive(command: Callable[[np.ndarray, np.ndarray], tuple[float, float]], seed: int,
           limit: float) -> tuple[float | None, float]:
-    """A robot without slip drives through hall `seed` by command(angles, ranges) -> m/s, rad/s.
+    """Drives a robot without slip through hall `seed` by command(angles, ranges) -> m/s, rad/s.
 
-    Time (s) to the finish, None if it took more than `limit`, and the least air (m) round it.
+    Returns the time (s) to the finish, None if it exceeds `limit`, and the least clearance (m).
     """
     places, pose, least = columns(seed), (0.0, 0.0, 0.0), math.inf
     for step in range(round(limit / PERIOD)):
@@ -69,7 +69,7 @@ def drive(command: Callable[[np.ndarray, np.ndarray], tuple[float, float]], seed
 
 
 def world(seed: int) -> str:
-    """The text of a world file of that hall."""
+    """The text of the hall's world file."""
     end, middle, half = LENGTH - 1, LENGTH / 2 - 1, (WIDTH + WALL) / 2
     walls = [(middle, half, LENGTH, WALL), (middle, -half, LENGTH, WALL),
              (-1 - WALL / 2, 0, WALL, WIDTH), (end + WALL / 2, 0, WALL, WIDTH)]

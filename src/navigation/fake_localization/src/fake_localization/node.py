@@ -39,7 +39,7 @@ class FakeLocalization:
     """True poses come in; the same go out as amcl's, with the transform from map to odom.
 
     As upstream: the frame of what comes in is not looked at, and an initial pose in another frame
-    than the map's is a warning but counts. When the clock is set back it begins anew.
+    than the map's is a warning but counts. When the clock is set back it starts again.
     """
 
     def __init__(self, values: dict) -> None:
@@ -80,7 +80,7 @@ class FakeLocalization:
     def _take_truth(self, truth: Odometry) -> None:
         with self._came:
             if truth.header.stamp < self._newest:
-                rospy.logwarn("the clock went back by %.1f s: beginning anew",
+                rospy.logwarn("the clock went back by %.1f s: starting again",
                               (self._newest - truth.header.stamp).to_sec())
                 self._waiting.clear()
                 self._transforms.buffer.clear()

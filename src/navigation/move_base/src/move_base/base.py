@@ -158,7 +158,7 @@ class Base:
         with self._lock:
             if self._guard.poll() is not None and not self._closed:
                 rospy.logwarn("the process that stops the robot if this one is killed has ended; "
-                              "it begins anew")
+                              "it starts again")
                 self._guard, self._driven = self._start_guard(), False
             if driven == self._driven:
                 return

@@ -198,7 +198,7 @@ class MoveBase:
 
     def _begin_time_anew(self, now: float) -> None:
         """The clock was set back; upstream then refuses all goals until the old time is reached."""
-        rospy.logwarn("the clock was set back to %.2f s: patience begins anew", now)
+        rospy.logwarn("the clock was set back to %.2f s: patience starts again", now)
         self._machine.hold(now)
         for handle in (self._server.current_goal, self._server.next_goal):
             if isinstance(handle, ServerGoalHandle) and handle.status_tracker is not None:

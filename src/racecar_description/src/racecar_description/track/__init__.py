@@ -1,5 +1,5 @@
-"""Race tracks of one's own: from a drawing, a centre line or a seed to a world to drive in.
+"""Custom race tracks: from a drawing, a centre line or a seed to a world to drive in.
 
 Everything is in m, x right and y up, angles counter-clockwise. The drawing's frame has its origin
-in the picture's lower left corner; the world's has it where a lap starts (see `course.py`).
+in the picture's lower left corner; the world's is where a lap starts (see `course.py`).
 """

@@ -10,9 +10,9 @@ import numpy as np
 
 from racecar_description.track.errors import TrackError
 
-STRAIGHT = 1e-9  # rad and m: less is no bend, and no piece
+STRAIGHT = 1e-9  # rad and m: below this there is no bend, and no piece
 LEAST_CURVATURE = 1e-12  # 1/m
-SPACING = 0.02  # m, between the points that stand for the line in pictures and checks
+SPACING = 0.02  # m, between the points that represent the line in drawings and checks
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Corner:
 
 @dataclass(frozen=True)
 class Piece:
-    """A straight (curvature 0) or an arc (1/radius, positive to the left) from a pose onwards."""
+    """A straight (curvature 0) or an arc (1/radius, left positive), starting at a pose."""
 
     x: float
     y: float
@@ -36,11 +36,11 @@ class Piece:
 
     @property
     def is_straight(self) -> bool:
-        """Whether it bends too little for an arc's formulas."""
+        """Whether the curvature is too small for an arc's formulas."""
         return abs(self.curvature) < LEAST_CURVATURE
 
     def pose(self, s: float) -> tuple[float, float, float]:
-        """x, y and heading after s metres of this piece."""
+        """x, y and heading after s metres on this piece."""
         turned = self.heading + self.curvature * s
         if self.is_straight:
             return self.x + s * math.cos(turned), self.y + s * math.sin(turned), turned
@@ -49,7 +49,7 @@ class Piece:
         return x, y, turned
 
     def nearest(self, x: float, y: float) -> float:
-        """Length (m) along this piece at which it comes closest to the point."""
+        """The length (m) along this piece at which it is closest to the point."""
         ahead = math.cos(self.heading) * (x - self.x) + math.sin(self.heading) * (y - self.y)
         if self.is_straight:
             return min(max(ahead, 0.0), self.length)
@@ -58,13 +58,13 @@ class Piece:
         radius = 1.0 / abs(self.curvature)
         angle = math.atan2(ahead, radius - side * left)
         whole = self.length / radius
-        # The arc's blind side is split in the middle: half of it is nearer to each end.
+        # The side without the arc is split in the middle: each half is nearer to one end.
         if angle < whole / 2 - math.pi:
             angle += 2 * math.pi
         return min(max(angle, 0.0), whole) * radius
 
     def offset(self, left: float) -> Piece:
-        """The parallel piece this far (m) to the left; TrackError where a bend is too tight."""
+        """The parallel piece this far (m) to the left; TrackError if a bend is too tight."""
         scale = 1.0 - self.curvature * left
         if scale <= 0:
             raise TrackError(
@@ -76,7 +76,7 @@ class Piece:
 
 
 class CentreLine:
-    """The closed line through rounded corners, driven in their order; s (m) wraps at `length`."""
+    """A closed line with rounded corners, driven in their order; s (m) wraps at `length`."""
 
     def __init__(self, corners: Sequence[Corner]):
         self.corners = tuple(corners)
@@ -92,17 +92,17 @@ class CentreLine:
         return self.pieces[i].pose(s - self._begins[i])
 
     def points(self, spacing: float = SPACING) -> np.ndarray:
-        """(n, 2) points all along the line, evenly spaced, the first at s = 0."""
+        """(n, 2) evenly spaced points along the whole line, the first at s = 0."""
         count = max(8, math.ceil(self.length / spacing))
         return np.array([self.pose(i * self.length / count)[:2] for i in range(count)])
 
     def nearest(self, x: float, y: float) -> float:
-        """s of the point of the line that is closest to x, y."""
+        """s of the line's point closest to x, y."""
         points = self.points()
         step = self.length / len(points)
         best = step * int(np.argmin(np.hypot(*(points - (x, y)).T)))
         low, high = best - step, best + step
-        for _ in range(60):  # a ternary search: the distance has one valley between neighbours
+        for _ in range(60):  # a ternary search: the distance has one minimum between neighbours
             third = (high - low) / 3
             if self._distance(low + third, x, y) < self._distance(high - third, x, y):
                 high -= third
@@ -118,11 +118,11 @@ class CentreLine:
         return 1.0 / abs(sharpest.curvature), x, y
 
     def reversed(self) -> CentreLine:
-        """The same line driven the other way round."""
+        """The same line in the opposite direction."""
         return CentreLine(self.corners[::-1])
 
     def moved(self, dx: float, dy: float) -> CentreLine:
-        """The line shifted; coordinates are kept to a nanometre."""
+        """The line, translated; coordinates are rounded to a nanometre."""
         shifted = [Corner(round(c.x + dx, 9), round(c.y + dy, 9), c.radius) for c in self.corners]
         return CentreLine(shifted)
 
@@ -132,7 +132,7 @@ class CentreLine:
 
 
 def _pieces(corners: tuple[Corner, ...]) -> tuple[Piece, ...]:
-    """An arc for each corner and the straight after it, without those of no length."""
+    """An arc for each corner and the straight after it, without pieces of zero length."""
     x, y, radius = np.array([(c.x, c.y, c.radius) for c in corners], float).T
     edge_x, edge_y = np.roll(x, -1) - x, np.roll(y, -1) - y
     edges, leaving = np.hypot(edge_x, edge_y), np.arctan2(edge_y, edge_x)

@@ -12,7 +12,7 @@ SPACING = 0.05  # m, between the points compared
 
 
 def touching_place(line: CentreLine, width: float) -> tuple[float, float] | None:
-    """x, y (m) where two stretches of a road this wide touch; None where none do."""
+    """x, y (m) where two stretches of a road this wide touch; None if none do."""
     apart, i, j, points = _least(line, width)
     return tuple((points[i] + points[j]) / 2) if apart < width else None
 
@@ -29,9 +29,9 @@ def widest_road(line: CentreLine, limit: float) -> float:
 
 
 def _least(line: CentreLine, width: float) -> tuple[float, int, int, np.ndarray]:
-    """The least distance between stretches that are no neighbours along the line, and where.
+    """The least distance between stretches that are not neighbours along the line, and where.
 
-    Within a half circle round the road's own edge two points are neighbours: their road is one.
+    Two points within a half circle round the road's own edge count as neighbours.
     """
     points = line.points(SPACING)
     count = len(points)

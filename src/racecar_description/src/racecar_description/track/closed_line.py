@@ -1,4 +1,4 @@
-"""A track as geometry: a closed line of straights and arcs, from a track file's `start` on."""
+"""A track's geometry: a closed line of straights and arcs, starting at a track file's `start`."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ CLOSED_WITHIN = 1e-9  # m and rad, between the end of the last piece and the sta
 
 @dataclass(frozen=True)
 class NearestPoint:
-    """Where on the line a point belongs: m along it, and m to its left (negative: right)."""
+    """The line's point nearest to a place: m along it, and the place's m to its left."""
 
     s: float
     lateral: float
 
 
 class Track:
-    """A closed line; s runs from 0 at its start to `length`, and wraps."""
+    """A closed line; s runs from 0 at its start to `length`, then wraps."""
 
     def __init__(self, pieces: tuple[Piece, ...]):
         self.pieces = pieces
@@ -47,7 +47,7 @@ class Track:
         return self.pieces[0].pose(0.0)
 
     def nearest(self, x: float, y: float) -> NearestPoint:
-        """The point of the line closest to x, y."""
+        """The line's point closest to x, y."""
         best_distance, best = math.inf, NearestPoint(0.0, 0.0)
         for begin, piece in zip(self.begins, self.pieces, strict=True):
             s = piece.nearest(x, y)
@@ -64,18 +64,18 @@ class Track:
         return Track(tuple(piece.offset(left) for piece in self.pieces))
 
     def points(self, spacing: float = 0.02) -> list[tuple[float, float]]:
-        """Points all along the line, for drawing."""
+        """Points along the whole line, for drawing."""
         count = math.ceil(self.length / spacing)
         return [self.pose(i * self.length / count)[:2] for i in range(count)]
 
 
 def load_track(path: str | Path) -> Track:
-    """The yellow line of a track file, starting at its `start`."""
+    """A track file's yellow line, starting at its `start`."""
     return build_track(load_track_file(path), str(path))
 
 
 def build_track(track_file: TrackFile, place: str = "track") -> Track:
-    """Round the corners of the polygon and start the closed line at `start`."""
+    """Round the polygon's corners and start the closed line at `start`."""
     try:
         closed = Track(CentreLine(track_file.corners).pieces)
     except TrackError as error:
@@ -87,7 +87,7 @@ def build_track(track_file: TrackFile, place: str = "track") -> Track:
 
 
 def _starting_at(track: Track, s: float) -> tuple[Piece, ...]:
-    """The same line, cut open at s: the piece there becomes the first and, in part, the last."""
+    """The same line, cut at s: the piece there becomes the first one and, in part, the last."""
     index = max(i for i, begin in enumerate(track.begins) if begin <= s + CLOSED_WITHIN)
     split, done = track.pieces[index], s - track.begins[index]
     rest = track.pieces[index + 1 :] + track.pieces[:index]

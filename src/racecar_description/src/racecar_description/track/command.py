@@ -1,4 +1,4 @@
-"""make_track: reads the command line, writes a course's files, says what to type next."""
+"""make_track: reads the command line, writes a course's files, prints what to type next."""
 
 from __future__ import annotations
 
@@ -31,44 +31,44 @@ from racecar_description.track.wishes import Wishes
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 LARGEST = 100.0  # m, side of a plane
 
-ABOUT = "Turns a drawing, a centre line or a seed into a track: model, world, map, centre line."
+ABOUT = "Makes a track from a drawing, a centre line or a seed: model, world, map, centre line."
 EXAMPLES = """examples:
-  make_track drawing.png --size 12x8 --walls      the road is what is dark in the picture
-  make_track photo.jpg --road red --name monza    ... or what is red
-  make_track tracks/monza.yaml --reverse          from a centre line, the other way round
-  make_track --random 7 --walls                   a random circuit, the same for the same number
+  make_track drawing.png --size 12x8 --walls      the road is dark in the picture
+  make_track photo.jpg --road red --name monza    ... or red
+  make_track tracks/monza.yaml --reverse          from a centre line, in the opposite direction
+  make_track --random 7 --walls                   a random circuit, always the same for a seed
 """
 
 
 def parser() -> argparse.ArgumentParser:
-    """The options."""
+    """The parser of the command line."""
     result = argparse.ArgumentParser(
         prog="make_track", description=ABOUT, epilog=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter)
     add = result.add_argument
     add("source", nargs="?", type=Path, help="a picture (PNG, JPEG), or a track file (.yaml)")
     add("--random", type=_seed, metavar="SEED", help="a random circuit instead")
-    add("--size", type=_size, metavar="WxH", help="m, of the picture's plane (12x8)")
+    add("--size", type=_size, metavar="WxH", help="m, of the painted plane (12x8)")
     add("--walls", action="store_true", help="low walls along both edges of the road")
     add("--width", type=_width, metavar="M", help="m, of the road (as drawn)")
-    add("--road", type=_colour, metavar="COLOUR", help="red, '#1e90ff' ... (what is dark)")
-    add("--reverse", action="store_true", help="drive the other way round (counter-clockwise)")
-    add("--start", type=_point, metavar="X,Y", help="m, where laps begin, by the preview's rulers")
-    add("--min-radius", type=_length, default=1.2, metavar="M", help="of random bends (1.2)")
+    add("--road", type=_colour, metavar="COLOUR", help="red, '#1e90ff' ... (dark parts)")
+    add("--reverse", action="store_true", help="opposite direction (counter-clockwise)")
+    add("--start", type=_point, metavar="X,Y", help="m, where laps start, by the preview's rulers")
+    add("--min-radius", type=_length, default=1.2, metavar="M", help="m, of random bends (1.2)")
     add("--name", help="of model, world and map (the file's)")
     add("--out", type=Path, metavar="DIR", help="where to write (the package racecar_description; "
-        "out/tracks where that is installed)")
+        "out/tracks if that is installed)")
     return result
 
 
 def main(words: list[str], package: Path) -> int:
-    """Runs the command; `package` is the folder of racecar_description. Returns the exit code."""
+    """Run the command; `package` is the folder of racecar_description. Returns the exit code."""
     try:
         try:
             return _make(words, package)
         finally:  # also after --help, which ends in SystemExit
             sys.stdout.flush()
-    except BrokenPipeError:  # the reader has gone, as `head` does: the files are written by then
+    except BrokenPipeError:  # the reader closed the pipe, like `head`: the files are written
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for the flush at exit
         return 0
 
@@ -96,7 +96,7 @@ def _make(words: list[str], package: Path) -> int:
 
 
 def _is_installed(package: Path) -> bool:
-    """Whether it lies in an install space, where nobody's tracks belong."""
+    """Whether it is in an install space, where no tracks should be written."""
     return package.parent.name == "share" and (package.parent.parent / "setup.sh").exists()
 
 
@@ -126,7 +126,7 @@ def _name(options: argparse.Namespace) -> str:
 
 
 def _check_free(out: Path, name: str) -> None:
-    """A course that was made by this command may be made anew, others are left alone."""
+    """TrackError if the name belongs to a course that this command has not made."""
     folder = out / model_folder(name)
     if not folder.exists() and not (out / world_path(name)).exists():
         return
@@ -136,7 +136,7 @@ def _check_free(out: Path, name: str) -> None:
 
 
 def _write_problem(error: DrawingError, folder: Path, name: str) -> str:
-    """Writes the marked picture; returns what to say about it."""
+    """Write the marked picture; returns a message about it."""
     path = folder / f"{name}_problem.png"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -166,7 +166,7 @@ def _summary(course: Course, remarks: list[str], out: Path, package: Path) -> li
 
 
 def _next_command(course: Course, out: Path, package: Path) -> str:
-    """What a shell in a sourced workspace starts the car in this world with."""
+    """The command that starts the car in this world, in a sourced workspace."""
     world = shlex.quote(str((out / world_path(course.name)).resolve()))
     x, y, heading = (f"{value:.6g}" for value in course.start)
     command = "roslaunch racecar_description car_control.launch"
@@ -183,7 +183,7 @@ def _fail(text: str) -> int:
 
 
 def _signed_values(words: list[str]) -> list[str]:
-    """`--start -1,2` as `--start=-1,2`: argparse takes a leading minus for an option."""
+    """Turn `--start -1,2` into `--start=-1,2`: argparse takes a leading minus for an option."""
     result: list[str] = []
     for word in words:
         if result and result[-1] == "--start":

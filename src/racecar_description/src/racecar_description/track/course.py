@@ -1,4 +1,4 @@
-"""A race course ready to be drawn: the line, the road round it and the plane it is painted on.
+"""A race course, ready to be drawn: the line, its road, and the plane it is painted on.
 
 World frame, m. Courses from drawings and seeds have the world's origin where a lap starts, so that
 a car put at 0, 0 stands on the line; a track file's coordinates are the world's already.
@@ -13,16 +13,16 @@ from racecar_description.track.centre_line import CentreLine
 from racecar_description.track.track_file import TrackFile
 
 EDGE_LINE = 0.03  # m, width of the white lines at the road's edges
-VERGE = 0.03  # m of asphalt outside of them
-CENTRE_LINE = 0.05  # m, width of the yellow line, unless a track file says another
-LANE = 0.4  # m, middle of the yellow line to middle of a white one, where nothing says another
+VERGE = 0.03  # m of asphalt outside them
+CENTRE_LINE = 0.05  # m, width of the yellow line, unless a track file has another
+LANE = 0.4  # m, middle of the yellow line to middle of a white one, by default
 LEAST_WIDTH = 0.45  # m of road: the car is 0.28 m wide
 TURNING_CIRCLE = 0.95  # m, radius: wheelbase 0.335 m / tan(0.34 rad)
 
 
 @dataclass(frozen=True)
 class Plane:
-    """The painted rectangle: its middle and its sides, along x and y."""
+    """The painted rectangle: its centre and its sides, along x and y."""
 
     x: float
     y: float
@@ -32,7 +32,7 @@ class Plane:
 
 @dataclass(frozen=True)
 class Course:
-    """All that the files of a course are made from; `origin` is the world's in the drawing."""
+    """Everything that a course's files are made from; `origin`: the world's, in the drawing."""
 
     name: str
     source: str  # what it was made from, for comments and titles
@@ -46,7 +46,7 @@ class Course:
 
     @property
     def half_road(self) -> float:
-        """m, from the middle of the road to the end of its asphalt."""
+        """m, from the road's middle to the asphalt's edge."""
         return road_width(self.lane_width) / 2
 
     @property
@@ -56,7 +56,7 @@ class Course:
         return x, y, math.remainder(heading, 2 * math.pi)
 
     def track_file(self) -> TrackFile:
-        """What is written about it as YAML."""
+        """The contents of its YAML file."""
         return TrackFile(
             name=self.name,
             size=round(max(self.plane.width, self.plane.height), 3),
@@ -69,10 +69,10 @@ class Course:
 
 
 def road_width(lane_width: float) -> float:
-    """m, from one end of the asphalt to the other."""
+    """m, from one edge of the asphalt to the other."""
     return 2 * (lane_width + EDGE_LINE / 2 + VERGE)
 
 
 def lane_width(road: float) -> float:
-    """m, the inverse of `road_width`, to a millimetre."""
+    """m, the inverse of `road_width`, rounded to a millimetre."""
     return round(road / 2 - EDGE_LINE / 2 - VERGE, 3)

@@ -1,4 +1,4 @@
-"""Makes the course a Gazebo model, a painted plane, from the track file."""
+"""Makes a Gazebo model of the course, a painted plane, from the track file."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from racecar_description.track.painted_plane import model_texts
 from racecar_description.track.track_file import TrackFile
 
 SIDE_PX = 2048
-EDGE_MARGIN = 0.1  # m of bare plane that must stay around every line
+EDGE_MARGIN = 0.1  # m of bare plane required around every line
 MODEL_URI = "model://turtlebot3_autorace/course"
 BACKGROUND, WHITE, YELLOW = (10, 10, 10), (255, 255, 255), (255, 255, 0)  # RGB
 
@@ -27,7 +27,7 @@ DESCRIPTION = (
 
 
 def write_model(track_file: TrackFile, folder: Path) -> list[Path]:
-    """Write the model's four files below this folder; the same track gives the same bytes."""
+    """Write the model's four files into this folder; the same track gives the same bytes."""
     texts = model_texts(
         track_file.name,
         description=DESCRIPTION,
@@ -45,10 +45,10 @@ def write_model(track_file: TrackFile, folder: Path) -> list[Path]:
 
 
 def draw_course(track_file: TrackFile, side_px: int = SIDE_PX) -> np.ndarray:
-    """The plane's picture, RGB uint8: up is the plane's +y, right is its +x.
+    """The plane's texture, RGB uint8: up is the plane's +y, right is its +x.
 
-    The world file turns the plane by model_yaw, so the lines are turned back here: once the model
-    stands in the world they lie where the track file says.
+    The world file rotates the plane by model_yaw, so the lines are rotated back here: then they
+    are at the track file's coordinates in the world.
     """
     yellow = build_track(track_file)
     white = yellow.offset(-track_file.lane_width)
@@ -61,12 +61,12 @@ def draw_course(track_file: TrackFile, side_px: int = SIDE_PX) -> np.ndarray:
 
 
 def encode_png(image: np.ndarray) -> bytes:
-    """An RGB picture as PNG: written here, because image libraries differ in their bytes."""
+    """An RGB image as PNG; encoded here, because the bytes of image libraries differ."""
     height, width, _ = image.shape
     above = np.vstack([np.zeros((1, width, 3), np.uint8), image[:-1]])
     rows = np.full(
         (height, 1 + width * 3), 2, np.uint8
-    )  # 2: each byte is stored minus the one above
+    )  # 2: filter Up, each byte minus the one above
     rows[:, 1:] = (image - above).reshape(height, width * 3)
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
     chunks = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 9)), (b"IEND", b""))
@@ -77,7 +77,7 @@ def encode_png(image: np.ndarray) -> bytes:
 
 
 def _coverage(track_file: TrackFile, track: Track, side_px: int) -> np.ndarray:
-    """How much of each pixel the line covers, as whole numbers from 0 to 255."""
+    """How much of each pixel the line covers, as integers from 0 to 255."""
     half, metres_per_px = track_file.size / 2, track_file.size / side_px
     reach = track_file.line_width / 2 + metres_per_px
     centres = (np.arange(side_px) + 0.5) * metres_per_px - half
@@ -92,7 +92,7 @@ def _coverage(track_file: TrackFile, track: Track, side_px: int) -> np.ndarray:
 
 
 def _turned(piece: Piece, angle: float) -> Piece:
-    """The piece after turning the whole course about the origin."""
+    """The piece after a rotation of the whole course about the origin."""
     x = math.cos(angle) * piece.x - math.sin(angle) * piece.y
     y = math.sin(angle) * piece.x + math.cos(angle) * piece.y
     return Piece(x, y, piece.heading + angle, piece.length, piece.curvature)
@@ -114,7 +114,7 @@ def _bounds(piece: Piece, centres: np.ndarray, reach: float, half: float) -> tup
 
 
 def _distances(piece: Piece, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Distance (m) of points from the piece, rounded so that no last digit can change a pixel."""
+    """Distance (m) of points from the piece, rounded so that last digits cannot change a pixel."""
     along = _straight_distance if piece.is_straight else _arc_distance
     return np.round(along(piece, x - piece.x, y - piece.y), 9)
 
@@ -127,7 +127,7 @@ def _straight_distance(piece: Piece, dx: np.ndarray, dy: np.ndarray) -> np.ndarr
 
 
 def _arc_distance(piece: Piece, dx: np.ndarray, dy: np.ndarray) -> np.ndarray:
-    """Distance from the circle where the point's angle is on the arc, else from the nearer end."""
+    """Distance from the circle if the point's angle is on the arc, else from the nearer end."""
     radius, side = 1.0 / abs(piece.curvature), math.copysign(1.0, piece.curvature)
     ahead = math.cos(piece.heading) * dx + math.sin(piece.heading) * dy
     inward = side * (-math.sin(piece.heading) * dx + math.cos(piece.heading) * dy)

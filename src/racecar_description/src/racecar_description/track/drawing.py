@@ -1,4 +1,4 @@
-"""Reads a drawing and tells the road's pixels from the paper's, in one or two ways."""
+"""Reads a drawing and separates the road's pixels from the paper's, in one or two ways."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 
 from racecar_description.track.errors import DrawingError, Fault, TrackError
 
-MOST_PX, LEAST_PX = 1600, 64  # longer side that is worked with; shorter side of a usable picture
-PAPER_PATCH = 0.15  # of the longer side: a road is narrower than this, shadows on paper are wider
+MOST_PX, LEAST_PX = 1600, 64  # longest side after scaling; least side of a usable picture
+PAPER_PATCH = 0.15  # share of the longer side: roads are narrower, shadows on paper are wider
 LEAST_CONTRAST = 50  # grey levels between road and paper, of 255
-LEAST_STAIN_CONTRAST = 30  # ... between a road and a stain
-MOST_DARK = 0.6  # of the picture: more is a dark ground
-GREY_CHROMA = 15  # in CIE Lab: colours with less are told apart by lightness
-MOST_COLOUR_DISTANCE = 60  # in CIE Lab, between the named colour and the road's average
-LEAST_ROAD = 0.001  # of the picture
+LEAST_STAIN_CONTRAST = 30  # the same between a road and a stain
+MOST_DARK = 0.6  # share of the picture: more is a dark background
+GREY_CHROMA = 15  # in CIE Lab: colours with less are distinguished by lightness
+MOST_COLOUR_DISTANCE = 60  # in CIE Lab, between the given colour and the road's average
+LEAST_ROAD = 0.001  # share of the picture
 PAPER_IS_DARK = Fault(
     "blank", "what is dark is the paper, not the road; name the road's colour: --road white"
 )
@@ -39,9 +39,9 @@ NAMED_COLOURS = {  # RGB
 
 
 def read_picture(path: Path) -> np.ndarray:
-    """The picture as BGR uint8 on white, turned as its camera says, at most MOST_PX a side.
+    """The picture as BGR uint8 on white, oriented by its EXIF data, at most MOST_PX a side.
 
-    TrackError where there is none, DrawingError of one that is too small.
+    TrackError if it is missing or unreadable, DrawingError if it is too small.
     """
     try:
         data = np.frombuffer(path.read_bytes(), np.uint8)
@@ -68,7 +68,7 @@ def _decode(data: np.ndarray) -> np.ndarray | None:
     try:
         picture = cv2.imdecode(data, cv2.IMREAD_UNCHANGED)
         if picture is None or picture.ndim != 3 or picture.shape[2] != 4:
-            return cv2.imdecode(data, cv2.IMREAD_COLOR)  # this one heeds a phone's orientation
+            return cv2.imdecode(data, cv2.IMREAD_COLOR)  # applies a phone's orientation
     except cv2.error:
         return None
     if picture.dtype == np.uint16:
@@ -78,7 +78,7 @@ def _decode(data: np.ndarray) -> np.ndarray | None:
 
 
 def parse_colour(text: str) -> tuple[int, int, int]:
-    """RGB of a name or #rrggbb; ValueError says what is possible."""
+    """RGB of a colour's name or #rrggbb; ValueError lists the possibilities."""
     if text.lower() in NAMED_COLOURS:
         return NAMED_COLOURS[text.lower()]
     digits = text.removeprefix("#")
@@ -87,14 +87,14 @@ def parse_colour(text: str) -> tuple[int, int, int]:
             return tuple(bytes.fromhex(digits))
         except ValueError:
             pass
-    raise ValueError(f"no colour: {text!r}; use '#rrggbb' or one of {', '.join(NAMED_COLOURS)}")
+    raise ValueError(f"not a colour: {text!r}; use '#rrggbb' or one of {', '.join(NAMED_COLOURS)}")
 
 
 def road_masks(picture: np.ndarray, colour: str | None) -> list[np.ndarray] | Fault:
-    """Boolean pictures of what may be road, the likeliest first; a Fault if there is none.
+    """Boolean masks of possible roads, the likeliest first; a Fault if there are none.
 
-    The road is what is dark, or what has the given colour. Where the dark is of two kinds (ink
-    and coffee), the second mask holds the darker one.
+    The road is dark, or has the given colour. If there are two kinds of dark parts (ink and
+    coffee), the second mask has the darker one.
     """
     if colour is None and _on_dark_ground(picture):
         return PAPER_IS_DARK
@@ -108,7 +108,7 @@ def road_masks(picture: np.ndarray, colour: str | None) -> list[np.ndarray] | Fa
 
 
 def surrounds_all(mask: np.ndarray) -> bool:
-    """Whether it runs along most of all four borders of the picture, as a ground does."""
+    """Whether it covers most of all four borders of the picture, as a background does."""
     return all(side.mean() > 0.8 for side in (mask[0], mask[-1], mask[:, 0], mask[:, -1]))
 
 
@@ -121,7 +121,7 @@ def _on_dark_ground(picture: np.ndarray) -> bool:
 
 
 def _darkness(picture: np.ndarray) -> np.ndarray:
-    """0 (as bright as the paper around) to 255 (black), so that shadows on a photo do not count."""
+    """0 (as bright as the surrounding paper) to 255 (black): ignores shadows on a photo."""
     grey = cv2.medianBlur(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), 3)
     small = cv2.resize(grey, None, fx=0.25, fy=0.25, interpolation=cv2.INTER_AREA)
     side = round(PAPER_PATCH * max(small.shape)) | 1
@@ -132,9 +132,9 @@ def _darkness(picture: np.ndarray) -> np.ndarray:
 
 
 def _likeness(picture: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:
-    """255 (just this colour) downwards by the distance in CIE Lab.
+    """255 (exactly this colour) minus the distance in CIE Lab.
 
-    Lightness counts half, since pens and light differ, unless the colour is a grey.
+    Lightness counts half, because pens and light vary, unless the colour is a grey.
     """
     lab = cv2.cvtColor(picture.astype(np.float32) / 255, cv2.COLOR_BGR2LAB)
     wanted = cv2.cvtColor(np.array([[colour[::-1]]], np.float32) / 255, cv2.COLOR_BGR2LAB)
@@ -145,7 +145,7 @@ def _likeness(picture: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:
 
 
 def _split(difference: np.ndarray, least: float) -> Iterator[np.ndarray]:
-    """What stands out by Otsu's threshold, then what stands out of that; both above `least`."""
+    """Masks by Otsu's threshold, then by another one within the first; both above `least`."""
     chosen = np.ones(difference.shape, bool)
     for contrast in (LEAST_CONTRAST, LEAST_STAIN_CONTRAST):
         threshold = _otsu(difference[chosen])

@@ -1,4 +1,4 @@
-"""What can be wrong with a track, and where in the picture."""
+"""Errors of a track, and their places in the picture."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy as np
 
 
 class TrackError(Exception):
-    """A track that cannot be made; the text says what is wrong, where, and what to do."""
+    """The track cannot be made; the text says why, where, and what to do."""
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A place in a picture that is worth a circle."""
+    """A place in a picture to circle."""
 
     x_px: float
     y_px: float
@@ -21,7 +21,7 @@ class Mark:
 
 
 class DrawingError(TrackError):
-    """A drawing without a usable road; the marks are in pixels of `picture`, BGR as it was read."""
+    """The drawing has no usable road; the marks are in pixels of `picture`, BGR, as read."""
 
     def __init__(self, text: str, picture: np.ndarray, marks: list[Mark] | None = None):
         super().__init__(text)
@@ -31,7 +31,7 @@ class DrawingError(TrackError):
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong with one way of reading a drawing: a kind, a sentence, places."""
+    """The error of one interpretation of a drawing: its kind, a sentence, places."""
 
     kind: str  # "blank", "open" or "crossing"
     text: str

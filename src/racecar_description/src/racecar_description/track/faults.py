@@ -1,4 +1,4 @@
-"""Says where a blot fails to be one closed road: its open ends, its crossing, its side road."""
+"""Finds why a blot is not one closed road: open ends, a crossing, or a side road."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import numpy as np
 from racecar_description.track.errors import Fault, Mark
 from racecar_description.track.mid_line import MidLine
 
-COARSE_PX = 240  # longer side of the picture in which ways along the road are walked
-SPUR = 3.0  # half widths from the road's middle: a side road reaches at least so far
-RAGGED = 0.35  # half widths: thinner hairs at the edge are no side roads
+COARSE_PX = 240  # longer side of the scaled picture in which paths along the road are searched
+SPUR = 3.0  # half widths from the road's middle that a side road reaches at least
+RAGGED = 0.35  # half widths: thinner spikes at the edge are not side roads
 
 
 def open_fault(mask: np.ndarray) -> Fault:
-    """No ring: marks both ends of each large part."""
+    """There is no ring: marks both ends of each large part."""
     count, labels, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8))
     areas = stats[1:, cv2.CC_STAT_AREA]
     if count == 1 or areas.max() < 0.001 * mask.size:
@@ -27,7 +27,7 @@ def open_fault(mask: np.ndarray) -> Fault:
 
 
 def _far_ends(blot: np.ndarray) -> list[tuple[float, float]]:
-    """The two points of a blot that are farthest apart along it (px, x and y)."""
+    """The two points of a blot that are farthest apart along it (x, y in px)."""
     shrink = min(1.0, COARSE_PX / max(blot.shape))
     size = [max(1, round(side * shrink)) for side in blot.shape[::-1]]
     coarse = cv2.resize(blot.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0.2
@@ -39,7 +39,7 @@ def _far_ends(blot: np.ndarray) -> list[tuple[float, float]]:
 
 
 def _farthest(mask: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """The pixel (row, column) that a flood from `start` reaches last."""
+    """The pixel (row, column) that a flood fill from `start` reaches last."""
     reached = np.zeros(mask.shape, np.uint8)
     reached[tuple(start)] = 1
     allowed, last = mask.astype(np.uint8), np.asarray(start)
@@ -54,7 +54,7 @@ def _farthest(mask: np.ndarray, start: np.ndarray) -> np.ndarray:
 
 
 def crossing_fault(road: np.ndarray, infields: list[np.ndarray]) -> Fault:
-    """Two infields or more: marks where three regions meet most closely."""
+    """There are two or more infields: marks where three regions are nearest to each other."""
     outside = ~road
     for infield in infields:
         outside &= ~infield
@@ -74,7 +74,7 @@ def crossing_fault(road: np.ndarray, infields: list[np.ndarray]) -> Fault:
 
 
 def spur_fault(road: np.ndarray, mid_line: MidLine) -> Fault | None:
-    """A side road that leads nowhere: marks where it leaves the road; None if there is none."""
+    """A dead-end side road: marks where it leaves the road; None if there is none."""
     half = float(np.median(mid_line.half_width))
     radius = max(1, round(RAGGED * half))
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))
@@ -98,7 +98,7 @@ def spur_fault(road: np.ndarray, mid_line: MidLine) -> Fault | None:
 
 
 def _distance_to(region: np.ndarray) -> np.ndarray:
-    """Of each pixel to the region, px."""
+    """The distance of each pixel to the region, px."""
     if not region.any():
         return np.full(region.shape, np.inf, np.float32)
     return cv2.distanceTransform((~region).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)

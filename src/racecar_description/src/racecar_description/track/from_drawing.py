@@ -29,12 +29,12 @@ from racecar_description.track.wishes import (
     plane_round,
 )
 
-SMOOTHED = 0.3  # of the drawn road's width: ragged edges are that long
-SMOOTHED_WIDTHS = (LEAST_WIDTH, 1.5)  # m, beyond which that does not grow
+SMOOTHED = 0.3  # share of the drawn road's width, the length of ragged edges
+SMOOTHED_WIDTHS = (LEAST_WIDTH, 1.5)  # m, bounds of the width used for that
 
 
 def from_drawing(path: Path, wishes: Wishes) -> tuple[Course, list[str]]:
-    """A course along a picture's closed road, and remarks; DrawingError if there is none."""
+    """A course along a picture's closed road, and remarks; DrawingError if it has none."""
     picture = read_picture(path)
     mid_line = _mid_line(path, picture, wishes.colour)
     shape_px, remarks = picture.shape[:2], []
@@ -76,7 +76,7 @@ def _mid_line(path: Path, picture: np.ndarray, colour: str | None) -> MidLine:
 
 
 def _scale(shape_px: tuple[int, int], wishes: Wishes, remarks: list[str]) -> float:
-    """m/px at which the picture fits the wished size; its shape is kept."""
+    """m/px at which the picture fits the wanted size; keeps its aspect ratio."""
     (height_px, width_px), (width, height) = shape_px, wishes.size or DEFAULT_SIZE
     scale = min(width / width_px, height / height_px)
     if max(width - width_px * scale, height - height_px * scale) > 0.02 * max(width, height):
@@ -88,7 +88,7 @@ def _scale(shape_px: tuple[int, int], wishes: Wishes, remarks: list[str]) -> flo
 
 
 def _lane(measured: float, wishes: Wishes, remarks: list[str]) -> float:
-    """The wished width, else the measured one, else the usual one round a mere line."""
+    """The wanted width, else the measured one, or the default if only a line is drawn."""
     if wishes.width is not None:
         return lane_width(wishes.width)
     if measured >= LEAST_WIDTH:
@@ -103,7 +103,7 @@ def _lane(measured: float, wishes: Wishes, remarks: list[str]) -> float:
 def _curve(
     mid_line: MidLine, scale: float, height_px: int, wishes: Wishes, bend: float
 ) -> np.ndarray:
-    """The smooth middle from its start, the way it is driven; (n, 2) in the drawing's frame."""
+    """The smooth middle from its start, in driving direction; (n, 2) in the drawing's frame."""
     x_px, y_px = mid_line.points.T
     points = np.column_stack((x_px + 0.5, height_px - y_px - 0.5)) * scale
     curve = fitting.smooth(points, fitting.width_weights(mid_line.half_width), bend)

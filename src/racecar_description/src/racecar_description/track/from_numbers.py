@@ -30,7 +30,7 @@ from racecar_description.track.wishes import (
 
 
 def from_track_file(path: Path, wishes: Wishes) -> tuple[Course, list[str]]:
-    """The course of a centre line; coordinates and, unless asked otherwise, widths are its own."""
+    """The course of a centre line, with its coordinates and, unless given, its widths."""
     track, line = load_centre_line(path)
     remarks: list[str] = []
     if wishes.backwards:
@@ -58,7 +58,7 @@ def from_track_file(path: Path, wishes: Wishes) -> tuple[Course, list[str]]:
 
 
 def from_seed(seed: int, wishes: Wishes) -> tuple[Course, list[str]]:
-    """The seed's random circuit on a plane of the wished size."""
+    """The seed's random circuit on a plane of the wanted size."""
     width, height = wishes.size or DEFAULT_SIZE
     lane = LANE if wishes.width is None else lane_width(wishes.width)
     line = random_circuit(seed, Room(width, height, road_width(lane), wishes.least_radius))
@@ -82,7 +82,7 @@ def from_seed(seed: int, wishes: Wishes) -> tuple[Course, list[str]]:
 
 
 def _start(line: CentreLine) -> tuple[float, float]:
-    """About the middle of the longest straight, of those along x if there are any."""
+    """About the middle of the longest straight, preferably along x."""
     straights = [piece for piece in line.pieces if piece.curvature == 0.0]
     along_x = [piece for piece in straights if abs(math.sin(piece.heading)) < 1e-6]
     longest = max(along_x or straights or line.pieces, key=lambda piece: piece.length)

@@ -1,7 +1,7 @@
 """The line in the middle of a closed road: as far from the infield as from the outside.
 
-This needs no thinning: the middle is where two distances are equal, found between pixels, and it
-has no branches. Coordinates are in px, x right and y down, a pixel's middle at whole numbers.
+This needs no thinning and gives no branches: the middle is where two distances are equal, to
+subpixel precision. Coordinates are in px, x right and y down, pixel centres at integers.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ NEWTON_STEPS = 5
 
 @dataclass(frozen=True)
 class MidLine:
-    """(n, 2) points round the road, in order, and the road's half width (n,) there; px."""
+    """(n, 2) points along the road, in order, and the road's half width (n,) there; px."""
 
     points: np.ndarray
     half_width: np.ndarray
 
 
 def find_mid_line(road: np.ndarray, infield: np.ndarray) -> MidLine:
-    """The middle of a ring; both masks are boolean, `infield` is what it encloses."""
+    """The middle line of a ring; both masks are boolean, `infield` is what it encloses."""
     to_infield = _distance(~infield)
     to_outside = _distance(road | infield)
-    ahead = to_infield - to_outside  # negative nearer to the infield, grows by 2 a pixel
+    ahead = to_infield - to_outside  # negative near the infield, grows by 2 per pixel
     inner = (infield | (road & (ahead < 0))).astype(np.uint8)
     contours, _ = cv2.findContours(inner, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     points = max(contours, key=cv2.contourArea).reshape(-1, 2).astype(np.float32)
@@ -38,13 +38,13 @@ def find_mid_line(road: np.ndarray, infield: np.ndarray) -> MidLine:
         steep = np.maximum((gradient**2).sum(axis=1), 0.5)
         step = gradient * (sample(smooth, points) / steep)[:, None]
         points = points - np.clip(step, -1, 1).astype(np.float32)
-    # Both distances end at a pixel's middle, half a pixel beyond the road's edge.
+    # Both distances are to pixel centres, half a pixel beyond the road's edge.
     half_width = (sample(to_infield, points) + sample(to_outside, points) - 1) / 2
     return MidLine(points.astype(float), half_width.astype(float))
 
 
 def sample(values: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Values (float32 picture) between pixels at (n, 2) points x, y."""
+    """Values of a float32 image, interpolated at (n, 2) points x, y."""
     x, y = np.asarray(points, np.float32).T
     rows = [  # remap takes at most 32767 columns
         cv2.remap(values, x[i : i + 30000][None], y[i : i + 30000][None], cv2.INTER_LINEAR)[0]
@@ -54,5 +54,5 @@ def sample(values: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def _distance(inside: np.ndarray) -> np.ndarray:
-    """Of each pixel to the nearest one that is not inside, px."""
+    """The distance of each pixel to the nearest one that is not inside, px."""
     return cv2.distanceTransform(inside.astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)

@@ -1,4 +1,4 @@
-"""The files of a course: model, world, map, track file, preview; relative path -> bytes."""
+"""The files of a course: model, world, map, track file, preview, as bytes by relative path."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from racecar_description.track.walls import (
     wall_boxes,
 )
 
-# Models that stand in a world beside the course's, and the older course of this package.
+# Models in a world besides the course's, and the older course of this package.
 TAKEN_NAMES = ("racecar", "sun", "ground_plane", "walls", "smartcar_plane")
 WRITTEN_BY = "Written by make_track of the package racecar_description"
 DESCRIPTION = """A lawn with a closed road: yellow centre line, white edge lines.
@@ -101,22 +101,22 @@ free_thresh: 0.196
 
 
 def model_folder(name: str) -> PurePosixPath:
-    """Where a course's model lies."""
+    """The folder of a course's model."""
     return PurePosixPath("models") / name
 
 
 def world_path(name: str) -> PurePosixPath:
-    """Where a course's world lies."""
+    """The path of a course's world."""
     return PurePosixPath("worlds") / f"{name}.world"
 
 
 def preview_path(name: str) -> PurePosixPath:
-    """Where a course's preview lies."""
+    """The path of a course's preview."""
     return PurePosixPath("tracks") / f"{name}.png"
 
 
 def write_course(course: Course, folder: Path) -> None:
-    """All files, below a folder; OSError names the one that cannot be written."""
+    """Write all files into a folder; OSError names one that cannot be written."""
     for relative, data in course_files(course).items():
         path = folder / relative
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -166,9 +166,9 @@ def _box_text(number: int, box: Box) -> str:
 
 
 def _in_comment(source: str) -> str:
-    """A file's name may hold what XML and YAML comments may not."""
+    """The source's name, without characters that XML and YAML comments cannot contain."""
     plain = "".join(letter if letter.isprintable() else "?" for letter in source)
-    # Dashes last: what stood between two of them may have gone.
+    # Dashes last: characters between two of them may have been removed.
     return re.sub("-{2,}", "-", re.sub("[<>&]", "", plain)).strip()
 
 

@@ -1,4 +1,4 @@
-"""A painted plane as a Gazebo model: the texts of its files; its texture comes from others."""
+"""A painted plane as a Gazebo model: the texts of its files, without the texture."""
 
 from __future__ import annotations
 
@@ -73,10 +73,10 @@ MATERIAL = """material {name}
 def model_texts(
     name: str, *, description: str, size: tuple[float, float], uri: str, part: str
 ) -> dict[str, str]:
-    """All but the texture, which belongs at materials/textures/NAME.png; relative path -> text.
+    """Texts by relative path; the texture (not included) is materials/textures/NAME.png.
 
     `size` is the plane's width and height (m), `uri` the model's folder as model://, and `part`
-    begins the names of its link, collision and visual.
+    is the prefix of the names of its link, collision and visual.
     """
     plane = PLANE.format(width=size[0], height=size[1])
     return {

@@ -1,4 +1,4 @@
-"""Paints a course as it looks from above: lawn, asphalt, white edges, yellow centre line."""
+"""Paints a course as seen from above: lawn, asphalt, white edges, yellow centre line."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import numpy as np
 
 from racecar_description.track.course import EDGE_LINE, VERGE, Course
 
-MOST_PX, MOST_PX_PER_M = 4096, 256  # of the texture's longer side; px a metre
-FINE = 2  # drawn larger and shrunk, so that edges are smooth
-SHIFT = 4  # cv2 draws between pixels when coordinates are given in sixteenths
-MOWN = 0.5  # m, width of the lawn's stripes: something to see the speed by
-START_LINE, CHECK = 0.3, 0.05  # m, length of the chequered start along the road; its squares
+MOST_PX, MOST_PX_PER_M = 4096, 256  # of the texture's longer side; px per metre
+FINE = 2  # drawn larger, then shrunk, for smooth edges
+SHIFT = 4  # cv2 draws with subpixel precision if coordinates are in sixteenths
+MOWN = 0.5  # m, width of the lawn's stripes, which make the speed visible
+START_LINE, CHECK = 0.3, 0.05  # m, length of the start line along the road; its squares' side
 
 # RGB
 LAWNS = ((62, 104, 58), (70, 114, 64))
@@ -19,13 +19,13 @@ ASPHALT, YELLOW, WHITE, BLACK = (52, 53, 56), (250, 205, 20), (235, 235, 235), (
 
 
 def texture_scale(course: Course) -> float:
-    """px a metre."""
+    """px per metre."""
     longest = max(course.plane.width, course.plane.height)
     return min(float(MOST_PX_PER_M), MOST_PX / longest)
 
 
 def paint_course(course: Course, px_per_m: float) -> np.ndarray:
-    """The plane's picture, RGB uint8: up is the world's +y, right is its +x."""
+    """The plane's texture, RGB uint8: up is the world's +y, right is its +x."""
     canvas = _Canvas(course, px_per_m)
     points = course.line.points()
     half = course.half_road
@@ -59,7 +59,7 @@ def _start_squares(course: Course) -> tuple[list[np.ndarray], list[np.ndarray]]:
 
 
 class _Canvas:
-    """The plane's picture while it is painted."""
+    """The plane's texture while it is being painted."""
 
     def __init__(self, course: Course, px_per_m: float):
         plane = course.plane
@@ -72,21 +72,21 @@ class _Canvas:
         self.image[:] = lawns[np.floor(x / MOWN).astype(int) % 2]
 
     def band(self, points: np.ndarray, width: float) -> np.ndarray:
-        """How much of each pixel (0 to 255) lies within width / 2 (m) of a closed line."""
+        """How much of each pixel (0 to 255) is within width / 2 (m) of a closed line."""
         thick = max(1, round(width * self._px_per_m * FINE))
         fine = self._empty()
         cv2.polylines(fine, [self._fixed(points)], True, 255, thick, cv2.LINE_AA, SHIFT)
         return self._shrunk(fine)
 
     def quads(self, shapes: list[np.ndarray]) -> np.ndarray:
-        """How much of each pixel (0 to 255) lies in one of the shapes."""
+        """How much of each pixel (0 to 255) is in one of the shapes."""
         fine = self._empty()
         for shape in shapes:
             cv2.fillPoly(fine, [self._fixed(shape)], 255, cv2.LINE_AA, SHIFT)
         return self._shrunk(fine)
 
     def paint(self, cover: np.ndarray, colour: tuple[int, int, int]) -> None:
-        """Lay a colour over the picture."""
+        """Blend a colour into the texture."""
         self.image[cover == 255] = colour
         edge = (cover > 0) & (cover < 255)
         share = cover[edge][:, None].astype(np.uint16)

@@ -1,4 +1,4 @@
-"""The picture of a course from above that a person looks at before driving."""
+"""The preview of a course, seen from above."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from racecar_description.track.course import TURNING_CIRCLE, Course, road_width
 from racecar_description.track.walls import THICKNESS
 
 WIDTH_PX, BORDER_PX, HEAD_PX = 1200, 50, 60
-PAPER, INK, FAINT = (30, 26, 24), (235, 232, 228), (165, 158, 152)  # BGR, as all pictures here
+PAPER, INK, FAINT = (30, 26, 24), (235, 232, 228), (165, 158, 152)  # BGR, as all images here
 WALL, CAR, TIGHT = (200, 190, 185), (60, 60, 240), (60, 60, 255)
 FONT = cv2.FONT_HERSHEY_DUPLEX
 
@@ -40,7 +40,7 @@ def draw_preview(course: Course, texture: np.ndarray, polygons: list[np.ndarray]
 
 
 class _View:
-    """Where world points lie on the page."""
+    """Maps world points to the page."""
 
     def __init__(self, course: Course, px_per_m: float):
         self.px_per_m = px_per_m
@@ -49,7 +49,7 @@ class _View:
         self.high = np.array((plane.x + plane.width / 2, plane.y + plane.height / 2))
 
     def px(self, points: np.ndarray) -> np.ndarray:
-        """(n, 2) world points as whole pixels."""
+        """(n, 2) world points as integer pixels."""
         corner = np.array((self.low[0], self.high[1]))
         pixels = (np.atleast_2d(points) - corner) * (self.px_per_m, -self.px_per_m)
         return np.round(np.add(pixels, (BORDER_PX, HEAD_PX))).astype(np.int32)
@@ -67,7 +67,7 @@ def _draw_tight_bends(page: np.ndarray, course: Course, view: _View) -> None:
 
 
 def _draw_car(page: np.ndarray, course: Course, view: _View) -> None:
-    """An arrow head at the start, pointing the way that laps go."""
+    """An arrow head at the start, in driving direction."""
     x, y, heading = course.start
     shape = np.array([(0.45, 0.0), (0.0, 0.17), (0.1, 0.0), (0.0, -0.17)])
     cosine, sine = math.cos(heading), math.sin(heading)
@@ -78,7 +78,7 @@ def _draw_car(page: np.ndarray, course: Course, view: _View) -> None:
 
 
 def _draw_rulers(page: np.ndarray, course: Course, view: _View) -> None:
-    """Metres of the drawing's frame, in which --start is given, below and on the left."""
+    """Rulers in metres of the drawing's frame, as for --start, at the bottom and on the left."""
     bottom, left = page.shape[0] - BORDER_PX, BORDER_PX
     for axis in (0, 1):
         origin = course.origin[axis]

@@ -1,4 +1,4 @@
-"""The picture that shows what is wrong with a drawing."""
+"""The picture that shows the error in a drawing."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import numpy as np
 
 from racecar_description.track.errors import DrawingError
 
-LEAST_PX = 480  # longer side: small drawings are shown larger
+LEAST_PX = 480  # longer side: small drawings are enlarged
 RED, PAPER, INK = (40, 30, 230), (245, 245, 245), (30, 30, 30)  # BGR
 FONT = cv2.FONT_HERSHEY_DUPLEX
 LINE_PX = 26
 
 
 def draw_problem(error: DrawingError) -> np.ndarray:
-    """BGR: the drawing, faded, with its marks in red and the message below."""
+    """BGR: the drawing, faded, with marks in red and the message below."""
     picture = error.picture
     larger = max(1.0, LEAST_PX / max(picture.shape[:2]))
     size = (round(picture.shape[1] * larger), round(picture.shape[0] * larger))
@@ -38,7 +38,7 @@ def draw_problem(error: DrawingError) -> np.ndarray:
 
 
 def _wrapped(text: str, width_px: int) -> list[str]:
-    """The text in lines that fit; cv2 draws ASCII only."""
+    """The text in lines that fit; cv2 only draws ASCII."""
     lines = [""]
     for word in text.encode("ascii", "replace").decode().split():
         longer = f"{lines[-1]} {word}".strip()

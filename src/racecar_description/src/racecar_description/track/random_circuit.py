@@ -1,6 +1,6 @@
-"""Random closed circuits: straights and arcs of a least radius that keep clear of each other.
+"""Random closed circuits: straights and arcs of a least radius, clear of each other.
 
-`random.Random` alone decides, whose numbers are the same on every machine and version.
+All randomness is from `random.Random`, whose numbers are the same on all machines and versions.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from racecar_description.track.centre_line import CentreLine, Corner
 from racecar_description.track.clearance import touching_place
 from racecar_description.track.errors import TrackError
 
-TRIES, ENOUGH = 4000, 4  # polygons drawn at most; good circuits to choose the longest of
+TRIES, ENOUGH = 4000, 4  # polygons tried at most; good circuits of which the longest is chosen
 MOST_CORNERS, LEAST_CORNERS = 9, 5
-MARGIN = 0.3  # m, between the road and the plane's edge: a wall stands there
-STRAIGHT = 1.5  # m, of the edge at the bottom on which the car starts, at least
+MARGIN = 0.3  # m, between the road and the plane's edge, room for a wall
+STRAIGHT = 1.5  # m, least length of the edge at the bottom on which the car starts
 
 
 @dataclass(frozen=True)
 class Room:
-    """What a circuit has to fit: the plane's sides, the road's width, the least radius; m."""
+    """The constraints on a circuit: the plane's sides, the road's width, the least radius; m."""
 
     width: float
     height: float
@@ -30,13 +30,13 @@ class Room:
 
     @property
     def inner(self) -> tuple[float, float]:
-        """Sides of the rectangle in which the centre line may lie."""
+        """Sides of the rectangle that may contain the centre line."""
         border = self.road_width + 2 * MARGIN
         return self.width - border, self.height - border
 
 
 def random_circuit(seed: int, room: Room) -> CentreLine:
-    """The seed's circuit, counter-clockwise, in the frame of the plane's lower left corner."""
+    """The seed's circuit, counter-clockwise; the origin is the plane's lower left corner."""
     diameter = 2 * room.least_radius
     if min(room.inner) < diameter:
         least = math.ceil((diameter + room.road_width + 2 * MARGIN) * 10) / 10
@@ -46,7 +46,7 @@ def random_circuit(seed: int, room: Room) -> CentreLine:
         )
     random, found = Random(seed), []
     for number in range(TRIES):
-        # Ever simpler, so that there is a circuit in small rooms too.
+        # Simpler and simpler, so that there is a circuit for small rooms too.
         corners = MOST_CORNERS - (MOST_CORNERS - LEAST_CORNERS + 1) * number // TRIES
         line = _circuit(random, room, corners)
         if line is not None:
@@ -57,7 +57,7 @@ def random_circuit(seed: int, room: Room) -> CentreLine:
 
 
 def _circuit(random: Random, room: Room, count: int) -> CentreLine | None:
-    """A circuit through this many random corners, or None if they allow none."""
+    """A circuit with this many random corners, or None if there is none."""
     points = _points(random, room, count)
     order = _untangled(points)
     corners = _corners([points[i] for i in order], room)
@@ -68,7 +68,7 @@ def _circuit(random: Random, room: Room, count: int) -> CentreLine | None:
 
 
 def _points(random: Random, room: Room, count: int) -> list[tuple[float, float]]:
-    """Points in the inner rectangle; the first two lie level, and a straight apart."""
+    """Points in the inner rectangle; the first two have the same y, and a straight between."""
     width, height = room.inner
     left, low = room.road_width / 2 + MARGIN, room.road_width / 2 + MARGIN
     y = low + random.uniform(0, 0.15) * height
@@ -83,7 +83,7 @@ def _points(random: Random, room: Room, count: int) -> list[tuple[float, float]]
 
 
 def _untangled(points: list[tuple[float, float]]) -> list[int]:
-    """A round trip from the first to the second point and on that crosses nowhere (2-opt)."""
+    """A closed tour without crossings that starts with the first two points (2-opt)."""
     order = list(range(len(points)))
     improved = True
     while improved:
@@ -105,7 +105,7 @@ def _apart(points: list[tuple[float, float]], i: int, j: int) -> float:
 
 
 def _corners(points: list[tuple[float, float]], room: Room) -> list[Corner] | None:
-    """The polygon's corners with radii that its edges have room for; None if one has not."""
+    """The polygon's corners with radii that fit its edges; None if one does not fit."""
     count = len(points)
     edges = [math.dist(points[i], points[(i + 1) % count]) for i in range(count)]
     headings = [
@@ -115,7 +115,7 @@ def _corners(points: list[tuple[float, float]], room: Room) -> list[Corner] | No
     if min(edges) < 0.1 or max(map(abs, turns)) > 2.8 or sum(turns) < 6:
         return None
     slopes = [math.tan(abs(turn) / 2) for turn in turns]
-    # Neighbours share the edge between them in the ratio of what the least radius takes.
+    # Neighbours share their edge in proportion to what the least radius needs.
     radii = []
     for i in range(count):
         shares = [edges[i] / (slopes[i] + slopes[(i + 1) % count] + 1e-9)]
@@ -127,7 +127,7 @@ def _corners(points: list[tuple[float, float]], room: Room) -> list[Corner] | No
 
 
 def _oval(room: Room) -> CentreLine:
-    """What fits where nothing else does."""
+    """The fallback if nothing else fits."""
     width, height = room.inner
     left = low = room.road_width / 2 + MARGIN
     radius = math.floor(min(width, height) / 2 * 1000) / 1000

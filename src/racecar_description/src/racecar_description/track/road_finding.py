@@ -1,4 +1,4 @@
-"""Finds the one closed road among a mask's blots, or says what keeps it from being one."""
+"""Finds the closed road among a mask's blots, or says why there is none."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from racecar_description.track.errors import Fault
 from racecar_description.track.faults import crossing_fault, open_fault, spur_fault
 from racecar_description.track.mid_line import MidLine, find_mid_line
 
-LEAST_INFIELD = 0.003  # of the picture; smaller holes in the dark are specks, dashes, letters
-LARGEST_CLOSING = 0.01  # of the longer side, radius: gaps of up to twice this are mended
-FILLING = 0.25  # of the road's width, radius: bright lines painted on the road are filled
+LEAST_INFIELD = 0.003  # share of the picture; smaller holes are specks, dashes, letters
+LARGEST_CLOSING = 0.01  # radius as share of the longer side: gaps of up to twice this are closed
+FILLING = 0.25  # radius as share of the road's width: bright lines painted on the road are filled
 @dataclass(frozen=True)
 class Road:
-    """A closed road: boolean masks of itself and of what it encloses, and its middle."""
+    """A closed road: boolean masks of the road and of its infield, and its middle line."""
 
     road: np.ndarray
     infield: np.ndarray
@@ -25,7 +25,7 @@ class Road:
 
 
 def find_road(masks: list[np.ndarray]) -> Road | Fault:
-    """The closed road of the likeliest reading of the drawing; a Fault if no reading has one."""
+    """The closed road in the likeliest mask that has one; a Fault if none has."""
     faults = []
     for mask in masks:
         for radius_px in _closings(mask):
@@ -38,14 +38,14 @@ def find_road(masks: list[np.ndarray]) -> Road | Fault:
 
 
 def _closings(mask: np.ndarray) -> list[int]:
-    """Radii (px) to close gaps with: first as is usual, then not at all, then as far as it goes."""
+    """Radii (px) for closing gaps: first the usual one, then none, then the largest."""
     largest = max(2, round(LARGEST_CLOSING * max(mask.shape)))
     usual = int(np.clip(round(FILLING * _stroke_width(mask)), 1, largest))
     return list(dict.fromkeys((usual, 0, largest)))
 
 
 def _stroke_width(mask: np.ndarray) -> float:
-    """px: a long stroke's area is half its outline times its width."""
+    """The stroke's width, px: a long stroke's area is half its outline times its width."""
     contours, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     outline = sum(cv2.arcLength(contour, True) for contour in contours)
     return 2.0 * float(mask.sum()) / max(outline, 1.0)
@@ -59,7 +59,7 @@ def _close(mask: np.ndarray, radius_px: int) -> np.ndarray:
 
 
 def _closed_road(mask: np.ndarray) -> Road | Fault:
-    inside = [blot for blot in _blots(mask) if not surrounds_all(blot)]  # no table round the paper
+    inside = [blot for blot in _blots(mask) if not surrounds_all(blot)]  # not a table round it
     rings = [ring for ring in map(_ring, inside) if ring[1]]
     if not rings:
         return open_fault(mask)
@@ -71,7 +71,7 @@ def _closed_road(mask: np.ndarray) -> Road | Fault:
 
 
 def _blots(mask: np.ndarray) -> list[np.ndarray]:
-    """The connected parts that are large enough to enclose anything, each a mask."""
+    """The connected parts that are large enough to enclose anything, as masks."""
     count, labels, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8))
     boxes = stats[:, cv2.CC_STAT_WIDTH] * stats[:, cv2.CC_STAT_HEIGHT]
     return [labels == i for i in range(1, count) if boxes[i] >= LEAST_INFIELD * mask.size]

@@ -1,4 +1,4 @@
-"""The line of a course as a YAML file: a polygon whose corners are rounded by arcs."""
+"""A course's line as a YAML file: a polygon with corners rounded by arcs."""
 
 from __future__ import annotations
 
@@ -12,31 +12,31 @@ import yaml
 from racecar_description.track.centre_line import CentreLine, Corner
 from racecar_description.track.errors import TrackError
 
-MOST = 1e4  # m, of any number; on a line of millions of km the nearest place takes minutes
+MOST = 1e4  # m, of any number; on a line of millions of km a nearest-point search takes minutes
 
 
 @dataclass(frozen=True)
 class TrackFile:
-    """A track's YAML, key by key; m in the world frame, driven in the order of the corners."""
+    """A track's YAML, key by key; m, in the world frame; driven in the order of the corners."""
 
     name: str
     size: float  # the longer side of the plane that the course is painted on
-    model_yaw: float  # rad, how the world file turns that plane
+    model_yaw: float  # rad, the plane's yaw in the world file
     line_width: float  # of the painted line
     lane_width: float  # from the middle of that line to the middle of the lane's other line
-    start: tuple[float, float]  # where laps begin, on the line
+    start: tuple[float, float]  # where laps start, on the line
     corners: tuple[Corner, ...]  # of the line
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML without `<<`: ten lines of that can stand for a billion values."""
+    """YAML without `<<`, because ten lines with it can mean a billion values."""
 
     def flatten_mapping(self, node: yaml.Node) -> None:
-        """Leaves the key as it is, which SafeLoader then refuses."""
+        """Keep the key as it is; SafeLoader then refuses it."""
 
 
 def load_track_file(path: str | Path) -> TrackFile:
-    """Read and check a track file; each mistake is one TrackError that names file and key."""
+    """Read and check a track file; an error is a TrackError that names file and key."""
     path = Path(path)
     try:
         values = yaml.load(path.read_text(encoding="utf-8"), _Loader)
@@ -52,7 +52,7 @@ def load_track_file(path: str | Path) -> TrackFile:
 
 
 def load_centre_line(path: Path) -> tuple[TrackFile, CentreLine]:
-    """A track file and its line; TrackError too where bends overlap or `start` is off the line."""
+    """A track file and its line; TrackError also if bends overlap or `start` is off the line."""
     track = load_track_file(path)
     try:
         line = CentreLine(track.corners)
@@ -88,10 +88,10 @@ def _name(value: object) -> str:
 
 
 def _shown(value: object) -> str:
-    """For a message; a list of YAML's aliases can be a billion times as long as its file."""
+    """A value for a message; expanded YAML aliases can be a billion times as long as the file."""
     try:
         return reprlib.repr(value)[:80]
-    except ValueError:  # Python spells no such number out
+    except ValueError:  # Python does not print such a number
         return "a number of thousands of digits"
 
 
@@ -135,7 +135,7 @@ def _number(place: str, value: object, positive: bool = False) -> float:
 
 
 def track_text(track: TrackFile, source: str) -> str:
-    """The file's text; `load_track_file` gives the same numbers back. `source`: what made it."""
+    """The file's text; `load_track_file` reads the same numbers. `source`: what it is made from."""
     lines = [
         f"# The centre line of a race track, made by make_track from {source}.",
         "# A polygon whose corners are rounded by arcs, driven in the order of the corners.",

@@ -1,4 +1,4 @@
-"""Walls along both edges of the road, as few straight boxes, and the map that they make."""
+"""Walls along both edges of the road, as few straight boxes, and their map."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from racecar_description.track.course import Course
 
 GAP = 0.1  # m, between the asphalt and a wall
 THICKNESS, HEIGHT = 0.08, 0.25  # m
-STRAIGHTENED = 0.03  # m, that a straight wall may be beside the curve it follows
-CELL = 0.01  # m, of the raster that walls are traced on
-LEAST_ISLAND = 0.3  # m, round an infield: smaller ones are no place for a wall
+STRAIGHTENED = 0.03  # m, largest distance of a straight wall from the curve it follows
+CELL = 0.01  # m, cell size of the raster on which walls are traced
+LEAST_ISLAND = 0.3  # m, of an infield: smaller ones have no room for a wall
 MAP_CELL = 0.05  # m
 FREE, UNKNOWN, OCCUPIED = 254, 205, 0  # grey levels of map_server
 
 
 @dataclass(frozen=True)
 class Box:
-    """A wall's middle, its heading (rad) and its length; m, world frame."""
+    """A wall's centre, its heading (rad) and its length; m, world frame."""
 
     x: float
     y: float
@@ -31,7 +31,7 @@ class Box:
 
 @dataclass(frozen=True)
 class GridMap:
-    """A picture for map_server, its first row the topmost, and where its lower left corner is."""
+    """An image for map_server, top row first, and the place of its lower left corner."""
 
     image: np.ndarray
     x: float
@@ -39,7 +39,7 @@ class GridMap:
 
 
 def trace_walls(course: Course) -> list[np.ndarray]:
-    """Closed polygons (n, 2) along which the middles of the walls run."""
+    """Closed polygons (n, 2), the centre lines of the walls."""
     raster = _Raster(course)
     inside = raster.band(course.half_road + GAP + THICKNESS / 2)
     contours, _ = cv2.findContours(inside, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
@@ -52,7 +52,7 @@ def trace_walls(course: Course) -> list[np.ndarray]:
 
 
 def wall_boxes(polygons: list[np.ndarray]) -> list[Box]:
-    """A box for each side, a little longer than it, so that corners have no gap."""
+    """A box for each side, a little longer, so that corners have no gap."""
     boxes = []
     for polygon in polygons:
         for (ax, ay), (bx, by) in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
@@ -88,7 +88,7 @@ def grid_map(course: Course, polygons: list[np.ndarray]) -> GridMap:
 
 
 class _Raster:
-    """A picture of the road's surroundings, CELL a pixel, y upwards in the world."""
+    """A raster image of the road's surroundings, CELL m per pixel; up is the world's +y."""
 
     def __init__(self, course: Course):
         self._points = course.line.points()
@@ -106,13 +106,13 @@ class _Raster:
         return picture
 
     def to_px(self, points: np.ndarray) -> np.ndarray:
-        """World points as the pixels they lie in."""
+        """The pixels that contain world points."""
         columns = (points[:, 0] - self.low_x) / CELL
         rows = self._size[1] - (points[:, 1] - self.low_y) / CELL
         return np.round(np.column_stack((columns, rows)) - 0.5).astype(np.int32)
 
     def to_world(self, pixels: np.ndarray) -> np.ndarray:
-        """Middles of pixels as world points."""
+        """Pixel centres as world points."""
         x = self.low_x + (pixels[:, 0] + 0.5) * CELL
         y = self.low_y + (self._size[1] - pixels[:, 1] - 0.5) * CELL
         return np.column_stack((x, y))

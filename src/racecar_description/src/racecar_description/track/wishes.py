@@ -1,4 +1,4 @@
-"""What a person asks of a course, whatever it is made from, and what follows for the road."""
+"""The options of a course, whatever it is made from, and what follows for the road."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from racecar_description.track.course import LEAST_WIDTH, Plane, lane_width, roa
 from racecar_description.track.errors import TrackError
 
 DEFAULT_SIZE = (12.0, 8.0)  # m
-BORDER = 0.5  # m of lawn round a road that needs a larger plane than asked for
+BORDER = 0.5  # m of lawn round a road that needs a larger plane than given
 
 
 @dataclass(frozen=True)
 class Wishes:
-    """The command line's options; None: as the source has it. Lengths in m."""
+    """The command line's options; None: as in the source. Lengths in m."""
 
     name: str
     size: tuple[float, float] | None = None
@@ -39,9 +39,9 @@ class RoadTouches(TrackError):
 
 
 def clear_lane(line: CentreLine, lane: float, wishes: Wishes, remarks: list[str]) -> float:
-    """The lane's width at which the road keeps clear of itself.
+    """The lane's width at which the road does not touch itself.
 
-    A wished width that does not is RoadTouches; another is made narrower, with a remark.
+    Raises RoadTouches for a given width that is too large; another is reduced, with a remark.
     """
     width = road_width(lane)
     place = touching_place(line, width)
@@ -59,9 +59,9 @@ def clear_lane(line: CentreLine, lane: float, wishes: Wishes, remarks: list[str]
 
 
 def check_start(wishes: Wishes, nearest: tuple[float, float], lane: float) -> None:
-    """TrackError if the wished start is more than a road's width beside the road.
+    """TrackError if the given start is more than a road's width from the road.
 
-    `nearest` is the point of the line (x, y in m, the drawing's frame) that is nearest to it.
+    `nearest` is the line's point (x, y in m, the drawing's frame) nearest to it.
     """
     if wishes.start is None:
         return
@@ -73,7 +73,7 @@ def check_start(wishes: Wishes, nearest: tuple[float, float], lane: float) -> No
 
 
 def plane_round(line: CentreLine, lane: float, sides: np.ndarray, middle: np.ndarray) -> Plane:
-    """A rectangle with these sides and middle, larger where the road needs it."""
+    """A rectangle with these sides and centre, larger if the road needs it."""
     points = line.points()
     low = points.min(axis=0) - road_width(lane) / 2
     high = points.max(axis=0) + road_width(lane) / 2

@@ -94,7 +94,7 @@ class Drive:
     def _ended(self, guard: subprocess.Popen) -> None:
         if guard is not self._guard:
             return
-        rospy.logwarn("the process that drives has ended with %s; it begins anew", guard.returncode)
+        rospy.logwarn("the process that drives has ended with %s; it restarts", guard.returncode)
         topics, self._topics, self._guard = self._topics, {}, None
         for waiting in self._answers.values():
             waiting.cancel()

@@ -61,7 +61,7 @@ async def _serve(rviz: str) -> None:
         await server.close()
         node.close()
     if not end.is_set():
-        print("viewer: another ROS master is there; starting anew", flush=True)
+        print("viewer: there is another ROS master; starting again", flush=True)
         restart(options, port)
 
 

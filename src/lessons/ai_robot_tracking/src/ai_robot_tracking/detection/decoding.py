@@ -1,6 +1,6 @@
 """Decodes the output of YOLO networks to boxes: pure functions on arrays.
 
-Two layouts are known, for a picture and C classes:
+It knows two layouts, for one image and C classes:
 - v5: (1, N, 5 + C), a row per candidate: centre x, centre y, width, height in px of the input,
 objectness, and C class scores; the score is objectness times class score.
 - v8: (1, 4 + C, N), a column per candidate: the same four, and C class scores.
@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 V5, V8 = "v5", "v8"
-MOST_CANDIDATES = 3000  # with the highest scores; more cost time and never matter
+MOST_CANDIDATES = 3000  # those with the highest scores; more would only cost time
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class Detections:
 
 
 def layout_of(shape: tuple[int, ...], class_count: int | None) -> tuple[str, int]:
-    """Layout and number of classes of an output of that shape; ValueError if it is neither.
+    """Layout and number of classes of an output of this shape; ValueError if it is neither.
 
-    Without a known number of classes, the longer of the two axes is taken for the candidates.
+    If the number of classes is unknown, the longer of the two axes is taken as the candidates.
     """
     if len(shape) != 3 or shape[0] != 1:
         raise ValueError(f"its output has shape {shape}")

@@ -20,11 +20,11 @@ class Placement:
 
 
 def letterbox(picture: np.ndarray, width: int, height: int) -> tuple[np.ndarray, Placement]:
-    """The (h, w, 3) uint8 picture, evenly scaled and centred in (height, width, 3) of grey."""
+    """The (h, w, 3) uint8 image, evenly scaled and centred in (height, width, 3) of grey."""
     rows, columns = picture.shape[:2]
     scale = min(height / rows, width / columns)
     inner = (max(1, round(columns * scale)), max(1, round(rows * scale)))
-    # An odd pixel of padding goes to the right and below.
+    # An odd pixel of padding goes to the right or the bottom.
     placement = Placement(scale, (width - inner[0]) // 2, (height - inner[1]) // 2)
     if (columns, rows) != inner:
         picture = cv2.resize(picture, inner, interpolation=cv2.INTER_LINEAR)
@@ -35,9 +35,9 @@ def letterbox(picture: np.ndarray, width: int, height: int) -> tuple[np.ndarray,
 
 
 def to_picture(boxes: np.ndarray, placement: Placement, width: int, height: int) -> np.ndarray:
-    """Boxes (n, 4) of left, top, right, bottom in the input, as px of a picture of that size.
+    """Boxes (n, 4) of left, top, right, bottom in the input, in px of an image of that size.
 
-    What lies beside the picture is cut off.
+    Parts outside the image are cut off.
     """
     offset = (placement.left, placement.top) * 2
     return np.clip((boxes - offset) / placement.scale, 0, (width, height) * 2)

@@ -1,4 +1,4 @@
-"""Between ROS messages and arrays: pictures in, detections and pictures out."""
+"""Converts ROS messages and arrays: images in, detections and images out."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def rgb_of(message: Image) -> np.ndarray:
     depth, conversion = ENCODINGS[message.encoding]
     height, width, step = message.height, message.width, message.step
     if not height or not width:
-        raise PictureError(f"a picture of {width}x{height} px")
+        raise PictureError(f"an image of {width}x{height} px")
     if step < width * depth or len(message.data) < height * step:
         raise PictureError(
             f"{width}x{height} px of {message.encoding} need {width * depth} bytes a row, but "
@@ -43,13 +43,13 @@ def rgb_of(message: Image) -> np.ndarray:
 
 
 def image_of(rgb: np.ndarray, header: Header) -> Image:
-    """A message of encoding rgb8 from a (h, w, 3) uint8 RGB picture."""
+    """A message with encoding rgb8 from a (h, w, 3) uint8 RGB image."""
     return Image(header=header, height=rgb.shape[0], width=rgb.shape[1], encoding="rgb8",
                  is_bigendian=0, step=3 * rgb.shape[1], data=rgb.tobytes())
 
 
 def detections_of(found: Detections, header: Header) -> Detection2DArray:
-    """Boxes in px with class numbers and scores, under the picture's own header."""
+    """Boxes in px with class numbers and scores, with the image's own header."""
     message = Detection2DArray(header=header)
     for box, score, label in zip(found.boxes, found.scores, found.classes):
         one = Detection2D(header=header)

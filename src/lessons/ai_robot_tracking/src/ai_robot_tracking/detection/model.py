@@ -1,4 +1,4 @@
-"""A network in an ONNX file, checked when opened, run image by image."""
+"""A network in an ONNX file: checked when opened, run image by image."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from ai_robot_tracking.settings import SettingsError
 
 USUAL_SIZE = (640, 640)  # px, if neither model nor YAML file gives a size
 LARGEST_FILE = 1 << 30  # bytes
-CELL = 8  # px: YOLO has a candidate for each cell of this side at least; after NMS are fewer
-SILENT = 4  # onnxruntime's log level: its errors are in our own line
+CELL = 8  # px: YOLO has at least one candidate per cell of this size; after NMS there are fewer
+SILENT = 4  # onnxruntime's log level: its errors are in our own message
 TYPES = {"tensor(float)": np.float32, "tensor(float16)": np.float16}
-EXPORT = "export it anew: yolo export model=best.pt format=onnx"
+EXPORT = "export it again: yolo export model=best.pt format=onnx"
 
 
 class ModelError(Exception):
@@ -31,7 +31,7 @@ class ModelError(Exception):
 
 
 class Model:
-    """A YOLO network; ModelError, of one line, if the file is not one."""
+    """A YOLO network; ModelError (one line) if the file does not contain one."""
 
     def __init__(self, path: Path | str, threads: int = 1):
         self.path = Path(path)
@@ -54,10 +54,10 @@ class Model:
         self.names = names or [f"class {number}" for number in range(count)]
 
     def detect(self, rgb: np.ndarray, confidence: float, iou: float) -> Detections:
-        """What is in a (h, w, 3) uint8 RGB picture; boxes are in its px and within it.
+        """The detections in a (h, w, 3) uint8 RGB image; boxes are in its px and within it.
 
         Returns what scores above `confidence` (0..1); of overlapping boxes of a class (by more
-        than `iou`, 0..1) only the surest.
+        than `iou`, 0..1) only the one with the highest score.
         """
         padded, placement = letterbox(rgb, self.width, self.height)
         found = decode(self.run(padded), self.layout, confidence, iou)
@@ -76,14 +76,14 @@ class Model:
         if len(inputs) != 1 or len(shape) != 4 or _fixed(shape[1]) not in (3, None) or _fixed(
                 shape[0]) not in (1, None):
             said = " and ".join(str(one.shape) for one in inputs) or "nothing"
-            raise ModelError(f"{self.path}: takes {said}, not one picture (1, 3, height, width); "
+            raise ModelError(f"{self.path}: takes {said}, not one image (1, 3, height, width); "
                              f"{EXPORT}")
         if inputs[0].type not in TYPES:
             raise ModelError(f"{self.path}: takes {inputs[0].type}, not float; {EXPORT}")
         return inputs[0].name, TYPES[inputs[0].type]
 
     def _size(self, wanted: tuple[int, int]) -> tuple[int, int]:
-        """Height and width: what the file fixes, else what is wanted."""
+        """Height and width: as fixed by the file, else as wanted."""
         fixed = [_fixed(side) for side in self._session.get_inputs()[0].shape[2:]]
         if max(side or 0 for side in fixed) > LARGEST:
             raise ModelError(f"{self.path}: takes {fixed[1]}x{fixed[0]} px, more than {LARGEST}; "
@@ -91,7 +91,7 @@ class Model:
         return fixed[0] or wanted[0], fixed[1] or wanted[1]
 
     def _checked_output(self) -> str:
-        """The one output of rank 3; older exports put out their raw maps of rank 5 beside it."""
+        """The one output of rank 3; older exports also have raw maps of rank 5 as outputs."""
         outputs = self._session.get_outputs()
         tables = [one for one in outputs if len(one.shape) in (0, 3)]
         if len(tables) != 1:
@@ -101,17 +101,17 @@ class Model:
         return tables[0].name
 
     def _layout(self, names: list[str] | None) -> tuple[str, int]:
-        """Found by one run on an empty image: an export need not state its output's size."""
+        """Determined by a run on an empty image: exports need not state their output's size."""
         empty = np.full((self.height, self.width, 3), PADDING, np.uint8)
         try:
             shape = self.run(empty).shape
-        except Exception as error:  # onnxruntime has one class for each reason
+        except Exception as error:  # onnxruntime has a class for each reason
             raise ModelError(f"{self.path}: does not run on {self.width}x{self.height} px: "
                              f"{_line(error)}") from None
         try:
             layout, count = layout_of(shape, len(names) if names else None)
             if layout == V5 and count == 1 and shape[1] < self.width * self.height / CELL**2:
-                raise ValueError(f"its output has shape {shape}: boxes that NMS has chosen")
+                raise ValueError(f"its output has shape {shape}: boxes after NMS")
         except ValueError as error:
             raise ModelError(f"{self.path}: {error}; wanted are YOLO's (1, N, 5 + classes) or "
                              f"(1, 4 + classes, N), without NMS in it") from None
@@ -119,7 +119,7 @@ class Model:
 
 
 def _open(path: Path, threads: int) -> onnxruntime.InferenceSession:
-    if not path.is_file():  # refuses pipes and devices, which may never end
+    if not path.is_file():  # not pipes and devices, which may never end
         reason = "there is no such file"
         if path.exists():
             reason = "is a folder" if path.is_dir() else "is not a regular file"
@@ -137,7 +137,7 @@ def _open(path: Path, threads: int) -> onnxruntime.InferenceSession:
                                             providers=["CPUExecutionProvider"])
     except OSError as error:
         raise ModelError(f"{path}: cannot be read: {error.strerror}") from None
-    except Exception as error:  # onnxruntime has one class for each reason
+    except Exception as error:  # onnxruntime has a class for each reason
         raise ModelError(f"{path}: is damaged, or no ONNX file: {_line(error)}; "
                          f"{EXPORT}") from None
 
@@ -148,6 +148,6 @@ def _fixed(side: int | str | None) -> int | None:
 
 
 def _line(error: Exception) -> str:
-    """What onnxruntime says, in one line, without its own file and line numbers."""
+    """onnxruntime's message in one line, without its own file names and line numbers."""
     text = " ".join(str(error).split()) or type(error).__name__
     return text.split(" : ", 2)[-1][:160]

@@ -1,4 +1,4 @@
-"""Names of classes: from a YAML file beside the network, or from the export's metadata."""
+"""Class names: from a YAML file next to the network, or from the export's metadata."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ SMALLEST, LARGEST = 32, 4096  # px, of a side of the input
 
 @dataclass(frozen=True)
 class Sidecar:
-    """What the YAML file beside a model says; None where it says nothing."""
+    """The contents of the YAML file next to a model; None for what it does not have."""
 
     names: list[str] | None
     input_size: tuple[int, int] | None  # height, width, px
 
 
 def read_sidecar(model: Path) -> Sidecar:
-    """Of MODEL.yaml, if there is one; SettingsError names file and key."""
+    """The contents of MODEL.yaml, if it exists; SettingsError names file and key."""
     path = model.with_suffix(".yaml")
     if not path.is_file():
         return Sidecar(None, None)
@@ -39,19 +39,19 @@ def read_sidecar(model: Path) -> Sidecar:
 
 
 def names_of_export(text: str | None) -> list[str] | None:
-    """Of the entry `names` in an ONNX file's metadata, as YOLO's exports write it."""
+    """The entry `names` of an ONNX file's metadata, as YOLO's exports write it."""
     if text is None:
         return None
     return checked_names(_literal(text, "its names"), "its names")
 
 
 def size_of_export(text: str | None) -> tuple[int, int] | None:
-    """Of the entry `imgsz` in an ONNX file's metadata."""
+    """The entry `imgsz` of an ONNX file's metadata."""
     return None if text is None else checked_size(_literal(text, "its imgsz"), "its imgsz")
 
 
 def checked_names(value: object, where: str) -> list[str]:
-    """Names as a list, from a list or a table of numbers from 0 on."""
+    """Names as a list, from a list or a table with the numbers from 0 on as keys."""
     if isinstance(value, dict):
         if set(value) != set(range(len(value))):
             raise SettingsError(f"{where}: the numbers must be 0 to {len(value) - 1}")

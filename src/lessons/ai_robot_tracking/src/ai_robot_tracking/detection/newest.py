@@ -9,7 +9,7 @@ T = TypeVar("T")
 
 
 class Newest(Generic[T]):
-    """Connects a thread that receives items with a slower one."""
+    """Passes items from one thread to a slower one."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
@@ -17,14 +17,14 @@ class Newest(Generic[T]):
         self._skipped = self._taken = 0
 
     def put(self, item: T) -> None:
-        """Put the newest item; one that was not taken is skipped."""
+        """Put the newest item; one that was not taken yet is skipped."""
         with self._changed:
             self._skipped += self._item is not None
             self._item = item
             self._changed.notify()
 
     def take(self, timeout: float) -> T | None:
-        """The newest, once; None if none comes within `timeout` wall s."""
+        """The newest item, only once; None if none comes within `timeout`, wall s."""
         with self._changed:
             self._changed.wait_for(lambda: self._item is not None, timeout)
             item, self._item = self._item, None
@@ -32,7 +32,7 @@ class Newest(Generic[T]):
             return item
 
     def counts(self) -> tuple[int, int]:
-        """How many were taken and how many skipped since this was last asked."""
+        """How many were taken and how many skipped since the last call."""
         with self._changed:
             counts = self._taken, self._skipped
             self._taken = self._skipped = 0

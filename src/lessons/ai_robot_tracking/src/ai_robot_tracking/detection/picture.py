@@ -1,4 +1,4 @@
-"""Boxes and names drawn into a picture."""
+"""Draws boxes and names into an image."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ FONT = cv2.FONT_HERSHEY_SIMPLEX
 
 
 def annotated(rgb: np.ndarray, found: Detections, names: list[str]) -> np.ndarray:
-    """A copy of the (h, w, 3) uint8 RGB picture with what was found in it."""
+    """A copy of the (h, w, 3) uint8 RGB image with the detections drawn into it."""
     picture = rgb.copy()
     large = max(picture.shape[:2]) / 640
     thick = max(1, round(2 * large))
@@ -24,15 +24,15 @@ def annotated(rgb: np.ndarray, found: Detections, names: list[str]) -> np.ndarra
 
 
 def class_colour(label: int) -> tuple[int, int, int]:
-    """A colour (RGB) for a class, far from those of the classes before it."""
-    hue = label * 111 % 180  # by a share near the golden section of OpenCV's 180
+    """A colour (RGB) for a class, distinct from those of the classes before it."""
+    hue = label * 111 % 180  # steps of about the golden section of OpenCV's 180
     colour = cv2.cvtColor(np.uint8([[[hue, 220, 255]]]), cv2.COLOR_HSV2RGB)[0, 0]
     return tuple(int(channel) for channel in colour)
 
 
 def _write(picture: np.ndarray, text: str, corner: tuple[int, int], colour: tuple[int, int, int],
            size: float) -> None:
-    """Write on a patch above the box, or inside it if there is no room above."""
+    """Write on a filled patch above the box, or inside it if there is no room above."""
     (width, height), below = cv2.getTextSize(text, FONT, size, 1)
     left = max(0, min(corner[0], picture.shape[1] - width - 2))
     top = corner[1] - height - below - 2

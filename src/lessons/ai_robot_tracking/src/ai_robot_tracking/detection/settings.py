@@ -22,10 +22,10 @@ from ai_robot_tracking.settings import (
 class Settings:
     """See config/detector_params.yaml."""
 
-    confidence: float = number(0, 1, "what scores less is not shown")
-    iou: float = number(0, 1, "of boxes that overlap more, the surest stays")
-    max_rate: float = number(0, 1000, "pictures a second, wall time; 0: as many as come")
-    threads: int = count(1, 64, "of the network")
+    confidence: float = number(0, 1, "detections with lower scores are dropped")
+    iou: float = number(0, 1, "of boxes that overlap more, the best score stays")
+    max_rate: float = number(0, 1000, "images per second of wall time; 0: no limit")
+    threads: int = count(1, 64, "for inference")
 
 
 FIELDS = {entry.name: entry for entry in fields(Settings)}
@@ -34,7 +34,7 @@ FIELDS = {entry.name: entry for entry in fields(Settings)}
 def read_settings(path: Path | str, given: Mapping[str, object]) -> Settings:
     """The file's settings, overridden by those in `given` (ROS parameters).
 
-    Raises SettingsError for an unknown or missing key and for a value that does not fit.
+    Raises SettingsError for an unknown or missing key, or an invalid value.
     """
     table = read_yaml(Path(path))
     if not isinstance(table, dict):
@@ -47,7 +47,7 @@ def read_settings(path: Path | str, given: Mapping[str, object]) -> Settings:
 
 
 def read_yaml(path: Path) -> object:
-    """What the file holds; SettingsError if it is not there or no YAML."""
+    """The file's contents; SettingsError if it does not exist or is not YAML."""
     try:
         return yaml.safe_load(path.read_text(encoding="utf-8"))
     except Exception as error:  # PyYAML also raises KeyError, IndexError and more

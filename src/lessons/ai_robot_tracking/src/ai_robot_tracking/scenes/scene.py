@@ -13,20 +13,20 @@ import numpy as np
 STATIC, MOVING, LIGHT, OCCLUSION, DISTRACTORS = KINDS = (
     "static", "moving", "light", "occlusion", "distractors")
 HALF_ROOM = 5.0             # m from the middle to a wall
-HALF_REACH = 3.0            # m that the cylinder stays from the middle, along x and along y
-SPEED, STEP = 0.3, 0.5      # m/s; s between two way-points
-DURATION = 120.0            # s of path before it returns along all of it
+HALF_REACH = 3.0            # m, the cylinder's farthest place from the middle, along x and y
+SPEED, STEP = 0.3, 0.5      # m/s; s between two waypoints
+DURATION = 120.0            # s of path before it returns along the same path
 MOST_TURN = 0.8             # rad/s, so that no bend is narrower than 0.375 m
-TURN_TIME = (1.0, 3.0)      # s between two changes of the turn
-START_DISTANCE, START_BEARING = (1.5, 3.0), math.radians(30)  # of the cylinder before the car
+TURN_TIME = (1.0, 3.0)      # s between two changes of the turn rate
+START_DISTANCE, START_BEARING = (1.5, 3.0), math.radians(30)  # of the cylinder, from the car
 STANDING = (3.0, 1.0)       # m, x and y of the cylinder that does not move
 HIDDEN_TIME = 3.0           # s under the hood
 HIDDEN_AT = ((18.0, 24.0), (40.0, 46.0))  # s, when the hood comes down
-FALL_TIME = 0.2             # s that the hood takes to come down, and to rise
-HOOD_UP = 2.6               # m above its lower place
+FALL_TIME = 0.2             # s that the hood takes to come down, or to rise
+HOOD_UP = 2.6               # m above its lower position
 SUN = (0.6, 1.0)            # times the usual strength
 SHADE_RADIUS = 1.5          # m
-SIDE = 4.3                  # m from the middle to where distractors stand
+SIDE = 4.3                  # m from the middle to the distractors
 
 Place = tuple[float, float]
 
@@ -42,19 +42,19 @@ class Lookalike:
 
 @dataclass(frozen=True)
 class Scene:
-    """All that a world file is made of."""
+    """Everything that a world file describes."""
 
     kind: str
     seed: int
-    way: np.ndarray                     # (N, 3): s, x, y of the cylinder; one row: it stands
-    hidden: tuple[float, ...] = ()      # s, from when on it is under the hood for HIDDEN_TIME
+    way: np.ndarray                     # (N, 3): s, x, y of the cylinder; one row: it stands still
+    hidden: tuple[float, ...] = ()      # s, times from which it is under the hood for HIDDEN_TIME
     sun: float = 1.0                    # times its usual strength
-    shades: tuple[Place, ...] = ()      # m, middles of round patches of shade
+    shades: tuple[Place, ...] = ()      # m, centres of round patches of shade
     lookalikes: tuple[Lookalike, ...] = ()
 
 
 def draw_scene(kind: str, seed: int) -> Scene:
-    """The seed's scene of one of KINDS."""
+    """The scene of this kind, one of KINDS, for a seed."""
     if kind == STATIC:
         return Scene(kind, seed, np.array([(0.0, *STANDING)]))
     random = np.random.default_rng([KINDS.index(kind), seed])
@@ -69,7 +69,7 @@ def draw_scene(kind: str, seed: int) -> Scene:
 
 
 def random_way(random: np.random.Generator, duration: float = DURATION) -> np.ndarray:
-    """A way (N, 3) of s, x, y at SPEED that bends at random, and back along the same way."""
+    """A path (N, 3) of s, x, y at SPEED that bends at random, and back along the same path."""
     distance, bearing = random.uniform(*START_DISTANCE), random.uniform(-1, 1) * START_BEARING
     place = np.array([distance * math.cos(bearing), distance * math.sin(bearing)])
     heading, turn, until = random.uniform(-math.pi, math.pi), 0.0, 0.0
@@ -90,18 +90,18 @@ def random_way(random: np.random.Generator, duration: float = DURATION) -> np.nd
 
 
 def _near_edge(place: np.ndarray) -> bool:
-    """Whether to turn back now; a half turn takes it 0.75 m farther out."""
+    """Whether to turn back now; a half turn takes it another 0.75 m outwards."""
     return bool(np.max(np.abs(place)) > HALF_REACH - 0.75)
 
 
 def _shades(random: np.random.Generator) -> tuple[Place, ...]:
-    """Two, in opposite quarters of the room."""
+    """Two patches of shade, in opposite quarters of the room."""
     x, y = random.uniform(0.8, 2.0, 2) * random.choice((-1, 1), 2)
     return (float(x), float(y)), (float(-x), float(-y))
 
 
 def _lookalikes(random: np.random.Generator) -> tuple[Lookalike, ...]:
-    """Along the walls: of its colour but another shape, of its shape but another colour."""
+    """Distractors along the walls: its colour in another shape, its shape in another colour."""
     red, orange, pink = (1.0, 0.0, 0.0), (1.0, 0.28, 0.0), (1.0, 0.35, 0.45)
     found = []
     kinds = (("ball", red), ("cylinder", orange), ("box", red), ("cylinder", pink))

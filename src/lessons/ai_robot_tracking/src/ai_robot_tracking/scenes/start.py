@@ -1,4 +1,4 @@
-"""Where a tracking car begins."""
+"""Where a tracking car starts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ START_REACH = 4.0    # m from the room's middle, along x and along y
 
 @dataclass(frozen=True)
 class Start:
-    """Where the car begins; m, rad."""
+    """Where the car starts; m, rad."""
 
     x: float
     y: float
@@ -23,7 +23,7 @@ class Start:
 
 
 def draw_start(kind: str, seed: int) -> Start:
-    """Anywhere in the room for a cylinder that stands; in the middle, facing it, if it walks."""
+    """Anywhere in the room if the cylinder stands; in the middle, facing it, if it moves."""
     if kind != STATIC:
         return Start(0.0, 0.0, 0.0)
     random = np.random.default_rng(seed)

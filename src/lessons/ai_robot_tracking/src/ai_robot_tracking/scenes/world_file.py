@@ -19,7 +19,7 @@ TARGET = "red_cylinder"
 RADIUS, HEIGHT = 0.2, 0.6            # m, of the cylinder
 HOOD_RADIUS, HOOD_HEIGHT = 0.3, 0.7  # m
 WALL_HEIGHT, WALL_THICKNESS = 1.0, 0.1
-SHADOW = 0.6                         # share of the light that shade takes
+SHADOW = 0.6                         # share of the light that is missing in the shade
 RED, HOOD_COLOUR = (1.0, 0.0, 0.0), (0.35, 0.4, 0.5)
 WALL_COLOURS = ((0.75, 0.75, 0.72), (0.62, 0.68, 0.72), (0.7, 0.74, 0.66), (0.66, 0.66, 0.7))
 UNSHADED = "<scene><shadows>0</shadows></scene>\n"
@@ -42,12 +42,12 @@ def world_text(scene: Scene) -> str:
 
 
 def world_name(kind: str) -> str:
-    """How the lesson calls the world file of a kind of scene, without .world."""
+    """The name of the lesson's world file for a kind of scene, without .world."""
     return "tracking" if kind == KINDS[0] else f"tracking_{kind}"
 
 
 def _light(sun: float) -> str:
-    """The usual sun, or a weaker one that comes slanting in."""
+    """The usual sun, or a weaker one, which shines at a slant."""
     if sun == 1.0:
         return UNSHADED + SUN
     ambient, diffuse = (" ".join([f"{sun * full:.3f}"] * 3) for full in (0.4, 0.8))
@@ -58,9 +58,9 @@ def _light(sun: float) -> str:
 
 
 def _shade(scene: Scene) -> str:
-    """Dark patches on the floor, and a thin dark skin for the cylinder while it is on one.
+    """Dark patches on the floor, and a thin dark cover for the cylinder while it is on one.
 
-    The scene's own shadows are off: these are where the trial wants them, without what casts them.
+    The scene's own shadows are off: these need no object to cast them.
     """
     if not scene.shades:
         return ""
@@ -77,7 +77,7 @@ def _shade(scene: Scene) -> str:
 
 
 def _walls() -> str:
-    """Each of another colour, so that turning on the spot changes the picture."""
+    """Each in another colour, so that turning on the spot changes the image."""
     parts, away = [], HALF_ROOM + WALL_THICKNESS / 2
     for number, (x, y) in enumerate(((away, 0), (0, away), (-away, 0), (0, -away))):
         size = (WALL_THICKNESS, 2 * HALF_ROOM) if x else (2 * HALF_ROOM, WALL_THICKNESS)
@@ -97,7 +97,7 @@ def _target(scene: Scene) -> str:
 
 
 def _hood(scene: Scene) -> str:
-    """Comes down over the cylinder, goes along with it, and rises again."""
+    """A hood that comes down over the cylinder, moves with it, and rises again."""
     low = HOOD_HEIGHT / 2 + 0.02
     times = [scene.way[:, 0]]
     for begin in scene.hidden:
@@ -125,7 +125,7 @@ def _lookalike(number: int, thing: Lookalike) -> str:
 
 
 def _walker(name: str, shape: str, colour: tuple, rows: np.ndarray) -> str:
-    """An actor that goes straight from row to row (N, 4) of s, x, y, z."""
+    """An actor that moves in straight lines from row to row (N, 4) of s, x, y, z."""
     points = "".join(f"<waypoint><time>{t:.3f}</time><pose>{x:.4f} {y:.4f} {z:.4f} 0 0 0</pose>"
                      "</waypoint>\n" for t, x, y, z in rows)
     return (f'<actor name="{name}">\n<link name="link">{_visual("body", shape, colour)}</link>\n'

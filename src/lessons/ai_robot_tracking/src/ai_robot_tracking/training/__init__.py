@@ -1,1 +1,1 @@
-"""The shipped detector: pictures with known boxes, a small network, its training, its score."""
+"""The shipped detector: images with known boxes, a small network, its training, its scores."""

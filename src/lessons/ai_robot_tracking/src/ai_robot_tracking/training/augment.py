@@ -1,4 +1,4 @@
-"""Changes pictures at random while they are learnt from: mirrored, zoomed, in another light."""
+"""Random augmentation of training images: mirrored, zoomed, in another light."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ import numpy as np
 from ai_robot_tracking.detection.letterbox import PADDING
 
 ZOOM = (0.6, 1.7)
-LEAST_KEPT = 0.5  # of a box's area, for it still to be found
-SMALLEST_PX = 6.0  # of the input: 12 px in a picture twice as wide
+LEAST_KEPT = 0.5  # of a box's area, for it to still count
+SMALLEST_PX = 6.0  # of the input: 12 px in an image twice as wide
 
 
 def augmented(
     rng: np.random.Generator, image: np.ndarray, labels: np.ndarray, size: tuple[int, int]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Another picture, of `size` (height, width), with its labels (n, 6); see `drawing.FIELDS`.
+    """A changed image of `size` (height, width), with its labels (n, 6); see `drawing.FIELDS`.
 
-    Into a smaller picture goes a part of it, or all of it made smaller.
+    A smaller image gets a part of the original, or all of it scaled down.
     """
     labels = labels.copy()
     if rng.random() < 0.5:
         labels[:, [1, 3]] = image.shape[1] - labels[:, [3, 1]]
         image = image[:, ::-1]
-    smaller = math.sqrt(size[1] / image.shape[1])  # between whole and at its own scale
+    smaller = math.sqrt(size[1] / image.shape[1])  # between all of it and its original scale
     factor = smaller * math.exp(rng.uniform(*np.log(ZOOM))) if rng.random() < 0.7 else smaller
     if factor != 1 or size != image.shape[:2]:
         image, labels = _zoomed(rng, np.ascontiguousarray(image), labels, factor, size)

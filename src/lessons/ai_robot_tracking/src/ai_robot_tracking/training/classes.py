@@ -1,4 +1,4 @@
-"""What the shipped detector tells apart, in the order of the network's outputs."""
+"""The shipped detector's classes, in the order of the network's outputs."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Sets of drawn pictures as files: fitted into the network's input, with their boxes in it.
+"""Sets of rendered images as files: fitted into the network's input, with their boxes.
 
-One set is a .npz: `images` (n, INPUT_HEIGHT, INPUT_WIDTH, 3) uint8 RGB, `labels` (m, 7) float32 of
+A file is an .npz: `images` (n, INPUT_HEIGHT, INPUT_WIDTH, 3) uint8 RGB, `labels` (m, 7) float32 of
 picture, class, left, top, right, bottom (px of the input), counts (0 or 1), `first`, the seed of
-the first picture, from which the others count up, and `count`, how many there are.
+the first image (the others follow it), and `count`, the number of images.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from ai_robot_tracking.detection.letterbox import letterbox
 INPUT_WIDTH, INPUT_HEIGHT = 320, 256  # px
 DAMAGED = (OSError, ValueError, KeyError, IndexError, TypeError, EOFError, BadZipFile)
 PICTURE, CLASS, BOX, COUNTS = 0, 1, slice(2, 6), 6  # columns of labels
-SHARD = 500  # pictures in one file
-TRAIN_FIRST, CHECK_FIRST, TEST_FIRST = 1_000_000, 2_000_000, 3_000_000  # seeds; sets never meet
+SHARD = 500  # images per file
+TRAIN_FIRST, CHECK_FIRST, TEST_FIRST = 1_000_000, 2_000_000, 3_000_000  # seeds; sets never overlap
 
 
 @dataclass(frozen=True)
 class PictureSet:
-    """Pictures and boxes; see the module."""
+    """Images and boxes; see the module's docstring."""
 
     images: np.ndarray
     labels: np.ndarray
@@ -35,7 +35,7 @@ class PictureSet:
 
 
 def fitted(rgb: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A picture and its labels (see `drawing.Picture`) in the network's input."""
+    """An image and its labels (see `drawing.Picture`), fitted into the network's input."""
     image, placement = letterbox(rgb, INPUT_WIDTH, INPUT_HEIGHT)
     moved = labels.copy()
     moved[:, 1:5] = moved[:, 1:5] * placement.scale + (placement.left, placement.top) * 2
@@ -43,7 +43,7 @@ def fitted(rgb: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 
 def write_set(path: Path, pictures: list[tuple[np.ndarray, np.ndarray]], first: int) -> None:
-    """Write fitted pictures to one file, which is there whole or not at all."""
+    """Write fitted images to one file, which is written completely or not at all."""
     rows = [np.column_stack([np.full(len(labels), number), labels])
             for number, (_, labels) in enumerate(pictures)]
     unfinished = path.with_suffix(".part.npz")
@@ -53,7 +53,7 @@ def write_set(path: Path, pictures: list[tuple[np.ndarray, np.ndarray]], first: 
 
 
 def holds(path: Path, count: int) -> bool:
-    """Whether the file is there and whole, with so many pictures."""
+    """Whether the file exists and is intact, with `count` images."""
     try:
         with np.load(path) as file:
             return int(file["count"]) == count
@@ -62,9 +62,9 @@ def holds(path: Path, count: int) -> bool:
 
 
 def read_sets(folder: Path, name: str, most: int | None = None) -> PictureSet:
-    """All files of a set as one, in the order of their seeds; `most` pictures of it.
+    """All files of a set as one, in the order of their seeds; at most `most` images.
 
-    FileNotFoundError if there is none, OSError if one is damaged.
+    FileNotFoundError if there are none, OSError if one is damaged.
     """
     images, labels, count, first = [], [], 0, None
     for path in sorted(folder.glob(f"{name}-*.npz")):
@@ -78,10 +78,10 @@ def read_sets(folder: Path, name: str, most: int | None = None) -> PictureSet:
                 labels.append(rows)
                 first = int(file["first"]) if first is None else first
         except DAMAGED as error:
-            raise OSError(f"{path}: no set of pictures; draw it again: {error}") from error
+            raise OSError(f"{path}: not a set of images; draw it again: {error}") from error
         count += len(images[-1])
     if first is None:
-        raise FileNotFoundError(f"{folder}: no pictures {name}-*.npz; draw them first")
+        raise FileNotFoundError(f"{folder}: no images {name}-*.npz; draw them first")
     together = PictureSet(np.concatenate(images), np.concatenate(labels), first)
     if most is None or most >= count:
         return together

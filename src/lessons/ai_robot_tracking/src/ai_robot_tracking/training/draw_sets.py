@@ -1,4 +1,4 @@
-"""Draws the sets of pictures that a network is trained with."""
+"""Renders the sets of images that a network is trained on."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from ai_robot_tracking.training.errors import TrainingError
 from bullet_sim.errors import SimulationError
 from bullet_sim.rendering.renderer import Renderer, open_renderer
 
-Shard = tuple[Path, range]  # a file, and the seeds of its pictures
+Shard = tuple[Path, range]  # a file, and the seeds of its images
 
 
 def open_drawing() -> Renderer:
-    """The renderer that cameras normally have, or TrainingError: the fallback draws otherwise."""
+    """The renderer that cameras normally use; TrainingError without it: the fallback differs."""
     try:
         return open_renderer("egl")
     except SimulationError as error:
-        raise TrainingError(f"{error}; pictures are drawn in .venv: rosrun ai_robot_tracking "
+        raise TrainingError(f"{error}; images are rendered in .venv: rosrun ai_robot_tracking "
                        "train_detector.py ...") from error
 
 
 def draw_set(folder: Path, name: str, first: int, count: int, jobs: int = 1) -> None:
-    """Write pictures of the seeds from `first` on; files that are already there are kept.
+    """Write the images of the seeds from `first` on; existing files are kept.
 
-    `jobs` processes draw at a time; the files do not depend on how many.
+    `jobs` processes render at a time; the files do not depend on their number.
     """
-    open_drawing().close()  # what cannot be drawn here is said once
+    open_drawing().close()  # so that a missing renderer is reported once
     folder.mkdir(parents=True, exist_ok=True)
     shards = [(folder / f"{name}-{start}.npz", range(start, min(start + SHARD, first + count)))
               for start in range(first, first + count, SHARD)]
@@ -38,7 +38,7 @@ def draw_set(folder: Path, name: str, first: int, count: int, jobs: int = 1) -> 
     with multiprocessing.get_context("spawn").Pool(jobs) as pool:
         for drawn in pool.imap_unordered(_draw_shard, wanted):
             done += drawn
-            print(f"{name}: {done} of {count} pictures, {time.monotonic() - began:.0f} s",
+            print(f"{name}: {done} of {count} images, {time.monotonic() - began:.0f} s",
                   flush=True)
 
 

@@ -1,6 +1,6 @@
-"""Pictures by our own renderer, with the boxes of what is really seen in them.
+"""Images by our own renderer, with the boxes of the objects visible in them.
 
-Each world is drawn three times: as a camera sees it, with each object in a flat colour of its own,
+Each world is rendered three times: as a camera sees it, with each object in its own flat colour,
 and each object alone in a view twice as wide. A box encloses an object's visible pixels. The object
 is to be found if both sides of its box are at least 12 px in an image 640 px wide, and at least
 half of it is visible, neither hidden nor outside the image. Boxes of all other visible objects are
@@ -24,28 +24,28 @@ from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import Renderer
 from bullet_sim.rendering.scene import Node, Scene
 
-SMALLEST_PX = 12  # shorter side of a box, for a picture WIDTH_PX wide
-LEAST_SEEN = 0.5  # of a thing
-FEWEST_PIXELS = 8  # of which a box is kept at all
-WIDER = 2  # times: how much more the view that counts a whole thing takes in
+SMALLEST_PX = 12  # shorter side of a box, in an image WIDTH_PX wide
+LEAST_SEEN = 0.5  # visible share of an object
+FEWEST_PIXELS = 8  # needed for a box to be kept
+WIDER = 2  # times: width of the view in which a whole object is counted
 FIELDS = 6  # class, left, top, right, bottom, counts
 
 
 @dataclass(frozen=True)
 class Picture:
-    """One picture and what is to be found in it."""
+    """One image and the objects in it."""
 
     rgb: np.ndarray  # (h, w, 3) uint8
     labels: np.ndarray  # (n, FIELDS) float32: class, left, top, right, bottom (px), counts (0, 1)
 
 
 def draw_picture(renderer: Renderer, seed: int) -> Picture:
-    """The picture of a seed's world, with the camera's noise."""
+    """The image of a seed's world, with the camera's noise."""
     return draw_stage(renderer, make_stage(seed), seed)
 
 
 def draw_stage(renderer: Renderer, stage: Stage, seed: int) -> Picture:
-    """The picture of a stage; the seed is the noise's, and no two stages may have the same."""
+    """The image of a stage; the seed is for the noise, and must differ between stages."""
     rgb = renderer.draw(_scene(stage, seed), stage.view).rgb
     owners = renderer.draw(_flat(stage.things, stage.surroundings), stage.view).rgb[..., 0]
     labels = []
@@ -67,7 +67,7 @@ def _label(thing: Thing, seen: np.ndarray, whole: float) -> tuple[float, ...]:
 
 
 def _pixels_alone(renderer: Renderer, thing: Thing, view: CameraView) -> float:
-    """How many pixels of the picture's size the thing would have with nothing before it."""
+    """How many pixels (at the image's scale) the object would have with nothing in front of it."""
     fov = 2 * math.atan(WIDER * math.tan(view.horizontal_fov / 2))
     wide = replace(view, horizontal_fov=fov)
     alone = renderer.draw(_flat([replace(thing, support=())], ()), wide)
@@ -78,7 +78,7 @@ def _scene(stage: Stage, seed: int) -> Scene:
     scene = Scene(stage.description)
     for light in stage.lights:
         scene.add_light(light)
-    # Renderers keep a texture by its name as long as it has one size: names of no other world.
+    # Renderers cache a texture by name, until its size changes: use names of no other world.
     scene.images = {f"{seed} {name}": image for name, image in stage.images.items()}
     groups = [(stage.surroundings, IDENTITY)]
     groups += [((*thing.own, *thing.support), thing.pose) for thing in stage.things]
@@ -95,7 +95,7 @@ def _renamed(part: MeshPart, seed: int) -> MeshPart:
 
 
 def _flat(things: list[Thing], surroundings: tuple[MeshPart, ...]) -> Scene:
-    """Thing n in red n of 255, all else black."""
+    """Object n in red n of 255, everything else black."""
     scene = Scene()
     scene.description = replace(scene.description, background=(0.0, 0.0, 0.0, 1.0))
     if surroundings:
@@ -116,5 +116,5 @@ def _noisy(rgb: np.ndarray, grain: float, seed: int) -> np.ndarray:
         return rgb
     rng = np.random.default_rng((0x6A1, seed))
     noise = rng.standard_normal((rgb.shape[0] // 2, rgb.shape[1], 3), np.float32) * grain
-    noise = np.concatenate([noise, noise[::-1, ::-1]])  # half a sheet, used twice: it costs half
+    noise = np.concatenate([noise, noise[::-1, ::-1]])  # half the noise, used twice, costs half
     return cv2.add(rgb, noise, dtype=cv2.CV_8U)

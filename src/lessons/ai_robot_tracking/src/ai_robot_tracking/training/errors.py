@@ -1,5 +1,5 @@
-"""What ends the making of a detector."""
+"""Errors that end the training of a detector."""
 
 
 class TrainingError(Exception):
-    """One line that says what is wrong, and what to type instead."""
+    """One line with the error and what to type instead."""

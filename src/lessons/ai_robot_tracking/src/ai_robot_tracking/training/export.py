@@ -1,6 +1,6 @@
 """Writes a trained network as an ONNX file in YOLO's v8 layout, (1, 4 + classes, cells).
 
-Weights are kept in half precision, which onnxruntime widens once when it opens the file.
+Weights are stored in half precision; onnxruntime converts them once when it opens the file.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from ai_robot_tracking.training.layers import (
 from ai_robot_tracking.training.network import Detector, cell_centres
 
 OPSET, IR_VERSION = 17, 8
-WORST = 0.5  # px or a hundredth of a score: more between torch and ONNX is a fault
+WORST = 0.5  # px, or hundredths of a score: largest allowed difference between torch and ONNX
 
 
 class ExportError(Exception):
-    """The file does not compute what the network does."""
+    """The file does not compute the same as the network."""
 
 
 def export(network: Detector, path: Path, metadata: dict[str, str]) -> None:
-    """Write the file, with class names and `metadata` in it; it is checked against torch."""
+    """Write the file with class names and `metadata`, and check it against torch."""
     graph = _Graph()
     for layer in network.layers:
         graph.layer(layer, network)
@@ -52,13 +52,13 @@ def export(network: Detector, path: Path, metadata: dict[str, str]) -> None:
 
 
 class _Graph:
-    """Nodes and weights as they come."""
+    """Collects nodes and weights."""
 
     def __init__(self) -> None:
         self._nodes, self._weights = [], []
 
     def layer(self, layer, network: Detector) -> None:
-        """The nodes of one layer; what comes out bears its name."""
+        """The nodes of one layer; the output has the layer's name."""
         if layer.kind in (CONV, HEAD):
             self._convolution(layer, *network.convolution(layer))
         elif layer.kind == ADD:
@@ -74,7 +74,7 @@ class _Graph:
                        strides=[1, 1], pads=[POOL_SIDE // 2] * 4)
 
     def tables(self) -> None:
-        """Heads to one table: middles and sizes in px of the input, and scores."""
+        """Heads to one table: box centres and sizes in px of the input, and scores."""
         boxes, scores = [], []
         for stride in STRIDES:
             rows, columns = INPUT_HEIGHT // stride, INPUT_WIDTH // stride
@@ -135,7 +135,7 @@ class _Graph:
 
 
 def _compare(network: Detector, path: Path) -> None:
-    """On a picture of noise: boxes and scores by torch and by the file."""
+    """Compare boxes and scores of torch and of the file on an image of noise."""
     import onnxruntime
 
     noise = np.random.default_rng(0).random((1, 3, INPUT_HEIGHT, INPUT_WIDTH), np.float32)

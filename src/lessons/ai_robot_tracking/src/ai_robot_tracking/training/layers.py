@@ -1,4 +1,4 @@
-"""The network as a list of layers, from which both torch's module and the ONNX file are made.
+"""The network as a list of layers, from which the torch module and the ONNX file are made.
 
 Strides 8, 16 and 32, each with a head; features go down, up and down again. About 0.3 GMAC for an
 input of 320 x 256.
@@ -17,12 +17,12 @@ POOL_SIDE = 5
 
 @dataclass(frozen=True)
 class Layer:
-    """One step: a name, what it does, and the names of what it works on."""
+    """One step: its name, its kind, and the names of its inputs."""
 
     name: str
     kind: str  # CONV: convolution, batch norm, ReLU; HEAD: a plain 1 x 1 convolution with bias
     inputs: tuple[str, ...]
-    channels: int  # that come out
+    channels: int  # of the output
     side: int = 1  # of the kernel
     stride: int = 1
 
@@ -46,7 +46,7 @@ class _Builder:
         return self.add(name, CONV, (source,), channels, side, stride)
 
     def residual(self, name: str, source: str) -> str:
-        """Two convolutions through half as many channels, added to what comes in."""
+        """Two convolutions through half as many channels, added to the input."""
         inner = self.conv(f"{name}.in", source, self._channels[source] // 2)
         outer = self.conv(f"{name}.out", inner, self._channels[source])
         return self.add(name, ADD, (source, outer))
@@ -79,7 +79,7 @@ def network_layers() -> list[Layer]:
 
 
 def _pyramid_of_pools(build: _Builder, source: str) -> str:
-    """What is round about at three sizes, so that a cell knows of all of a large thing."""
+    """Max pooling at three sizes, so that a cell has the context of a whole large object."""
     small = build.conv("pools.in", source, 64, side=1)
     pooled = build.add("pools.1", POOL, (small,))
     twice = build.add("pools.2", POOL, (pooled,))

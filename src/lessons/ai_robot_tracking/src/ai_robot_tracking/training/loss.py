@@ -1,6 +1,6 @@
 """Assigns cells to boxes, and computes the loss.
 
-Cells within a box compete for it by the root of their class score times the sixth power of their
+Cells within a box are ranked by the root of their class score times the sixth power of their
 overlap; the ten best are assigned to it, with target scores by the quality of their boxes.
 """
 
@@ -11,9 +11,9 @@ import math
 import torch
 from torch.nn import functional
 
-ANSWERING = 10  # cells for one box
+ANSWERING = 10  # cells assigned to one box
 SCORE_POWER, OVERLAP_POWER = 0.5, 6.0
-SMALLEST_REACH = 5.0  # px: cells this near to a box's middle may answer for it, however small it is
+SMALLEST_REACH = 5.0  # px: cells this near to a box's centre can be assigned to it, however small
 BOX_WEIGHT, CLASS_WEIGHT = 5.0, 1.0
 TINY = 1e-9
 
@@ -21,10 +21,10 @@ TINY = 1e-9
 def detection_loss(
     boxes: torch.Tensor, logits: torch.Tensor, centres: torch.Tensor, truth: torch.Tensor
 ) -> torch.Tensor:
-    """Mean cost of a batch.
+    """Mean loss of a batch.
 
     boxes (b, n, 4), logits (b, n, c), centres (n, 2) px; truth (b, m, 6): class, left, top, right,
-    bottom, counts; rows of nothing have class -1.
+    bottom, counts; unused rows have class -1.
     """
     wanted = (truth[..., 0] >= 0) & (truth[..., 5] > 0)
     near = _near(centres, truth[..., 1:5])
@@ -33,7 +33,7 @@ def detection_loss(
     target = torch.zeros_like(logits)
     label = truth[..., 0].clamp(min=0).long().gather(1, owner.clamp(min=0))
     target.scatter_(2, label[..., None], (quality * answers)[..., None])
-    # Barely visible objects are neither to be found nor wrong to find.
+    # Barely visible objects count neither as missed nor as false detections.
     hardly = (near & ((truth[..., 0] >= 0) & (truth[..., 5] == 0))[..., None]).any(1)
     weight = (answers | ~hardly).float()
     cost = functional.binary_cross_entropy_with_logits(logits, target, reduction="none").sum(2)
@@ -48,7 +48,7 @@ def detection_loss(
 
 
 def _near(centres: torch.Tensor, boxes: torch.Tensor) -> torch.Tensor:
-    """(b, m, n): whether a cell's middle is in a box, or very near to its middle."""
+    """(b, m, n): whether a cell's centre is in a box, or very near to the box's centre."""
     x, y = centres[:, 0], centres[:, 1]
     middle = (boxes[..., :2] + boxes[..., 2:]) / 2
     reach = ((boxes[..., 2:] - boxes[..., :2]) / 2).clamp(min=SMALLEST_REACH)
@@ -59,7 +59,7 @@ def _near(centres: torch.Tensor, boxes: torch.Tensor) -> torch.Tensor:
 def _assign(
     boxes: torch.Tensor, logits: torch.Tensor, near: torch.Tensor, truth: torch.Tensor
 ) -> tuple[torch.Tensor, torch.Tensor]:
-    """(b, n) index of the box that a cell answers for, -1: none; and how sure it should be."""
+    """(b, n) index of the box that a cell is assigned to, -1: none; and its target score."""
     overlap = plain_overlap(truth[:, :, None, 1:5], boxes[:, None]) * near
     label = truth[..., 0].clamp(min=0).long()
     scores = logits.sigmoid().transpose(1, 2).gather(
@@ -86,7 +86,7 @@ def plain_overlap(a: torch.Tensor, b: torch.Tensor) -> torch.Tensor:
 
 
 def complete_overlap(a: torch.Tensor, b: torch.Tensor) -> torch.Tensor:
-    """Overlap less what middles and shapes are apart: CIoU, of a known gradient also when 0."""
+    """CIoU: IoU minus penalties for centre distance and shape; its gradient exists at 0 too."""
     overlap = plain_overlap(a, b)
     low, high = torch.minimum(a[..., :2], b[..., :2]), torch.maximum(a[..., 2:], b[..., 2:])
     diagonal = ((high - low) ** 2).sum(-1) + 1e-7

@@ -1,4 +1,4 @@
-"""The command line of train_detector: draw, train, report; each step's files feed the next."""
+"""The command line of train_detector: draw, train, report; each step uses the last one's files."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from ai_robot_tracking.training.errors import TrainingError
 
 DONE, NOT_GOOD, NOT_RUN = 0, 1, 2
 PICTURES, TESTED = 6000, 500
-TARGET = 0.9  # mean average precision at an overlap of 0.5
-MOST = 900_000  # pictures of one set: seeds of sets must not meet
+TARGET = 0.9  # mean average precision at an IoU of 0.5
+MOST = 900_000  # images of one set: the sets' seeds must not overlap
 
 
 class Parser(argparse.ArgumentParser):
-    """Knows options by their whole names; its errors are TrainingErrors."""
+    """Accepts only full option names; its errors are TrainingErrors."""
 
     def __init__(self, **settings: object) -> None:
         super().__init__(**{"allow_abbrev": False, **settings})
 
     def error(self, message: str) -> None:
-        """TrainingError that says where the options are listed."""
-        program = self.prog.split()[0]  # a verb follows
+        """Raise a TrainingError that says where the options are listed."""
+        program = self.prog.split()[0]  # without the command
         raise TrainingError(f"{message} (see: rosrun ai_robot_tracking {program} --help)")
 
 
@@ -47,25 +47,25 @@ def _parser() -> Parser:
         prog="train_detector.py", description=__doc__,
         epilog="Exit code: 0 done, 1 the report's model is below the target, 2 could not run.")
     verbs = parser.add_subparsers(required=True, metavar="VERB", parser_class=Parser)
-    draw = verbs.add_parser("draw", help="draw the pictures to learn from")
-    draw.add_argument("folder", type=Path, help="where they go: 0.25 MB a picture")
+    draw = verbs.add_parser("draw", help="render the training images")
+    draw.add_argument("folder", type=Path, help="where to write them: 0.25 MB per image")
     draw.add_argument("--pictures", type=_count, default=PICTURES, metavar="N")
-    draw.add_argument("--jobs", type=_count, default=1, metavar="N", help="at a time")
+    draw.add_argument("--jobs", type=_count, default=1, metavar="N", help="processes at a time (1)")
     draw.set_defaults(verb=_draw)
     train = verbs.add_parser("train", help="train a network and write it as ONNX")
-    train.add_argument("folder", type=Path, help="of the pictures")
+    train.add_argument("folder", type=Path, help="with the images")
     train.add_argument("model", type=Path, help="the .onnx file to write")
     train.add_argument("--pictures", type=_count, default=PICTURES, metavar="N",
-                       help="how many of them")
+                       help="how many of them to use")
     train.add_argument("--steps", type=_count, metavar="N", help="instead of the plan's")
     train.add_argument("--until", type=_count, metavar="N",
-                       help="end at this step of the plan, whose rates stay")
+                       help="stop at this step, with the plan's rates unchanged")
     train.add_argument("--seed", type=_seed, default=0, metavar="N")
     train.add_argument("--start", type=Path, metavar="FILE.pt",
-                       help="go on from an earlier training, with whole pictures and smaller steps")
+                       help="continue an earlier training, with full-size images and smaller steps")
     train.set_defaults(verb=_train)
     report = verbs.add_parser("report", help="score a model on worlds that it was not trained on")
-    report.add_argument("model", type=Path, help="the .onnx file, its -training.json beside it")
+    report.add_argument("model", type=Path, help="the .onnx file, next to its -training.json")
     report.add_argument("--pictures", type=_count, default=TESTED, metavar="N")
     report.set_defaults(verb=_report)
     return parser
@@ -85,7 +85,7 @@ def _whole(text: str, least: int) -> int:
     return int(text)
 
 
-# The modules that a verb needs are imported by it: no environment has those of all three.
+# Each command imports its own modules: no environment has those of all three.
 def _draw(given: argparse.Namespace) -> int:
     from ai_robot_tracking.training.dataset import TRAIN_FIRST
     from ai_robot_tracking.training.draw_sets import draw_set

@@ -1,9 +1,9 @@
-"""Mean average precision: how well boxes that were found agree with the true ones.
+"""Mean average precision: how well the detected boxes agree with the true ones.
 
-Of each class all boxes found in all pictures are taken in the order of their scores. One is right
-if it overlaps a true box of its class, which no surer one has taken, by at least `overlap`; what
-overlaps a box that does not count is left out. The area under precision over recall, precision
-made to fall only, is the class's average precision; the mean of the classes is the result.
+For each class, the boxes detected in all images are sorted by score. One is correct if it overlaps
+a true box of its class by at least `overlap`, and no box with a higher score was matched to that
+one; a box that overlaps one that does not count is ignored. The area under the curve of precision
+over recall, made non-increasing, is the class's average precision; the result is the classes' mean.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Found:
-    """What a detector found in one picture."""
+    """What a detector found in one image."""
 
     boxes: np.ndarray  # (n, 4) left, top, right, bottom, px
     scores: np.ndarray  # (n,) 0..1
@@ -25,11 +25,11 @@ class Found:
 
 @dataclass(frozen=True)
 class Truth:
-    """What is in one picture."""
+    """The true boxes of one image."""
 
     boxes: np.ndarray  # (n, 4) as above
     classes: np.ndarray  # (n,) int
-    counts: np.ndarray  # (n,) bool; false: neither to be found nor wrong to find
+    counts: np.ndarray  # (n,) bool; false: neither missed nor a false detection
 
 
 def overlaps(first: np.ndarray, second: np.ndarray) -> np.ndarray:
@@ -44,7 +44,7 @@ def overlaps(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 def average_precision(
     found: Sequence[Found], truth: Sequence[Truth], label: int, overlap: float = 0.5
 ) -> float:
-    """Of one class over all pictures, 0..1; nan if there is nothing of it to be found."""
+    """Average precision of one class over all images, 0..1; nan if it has no boxes."""
     scores, right, total = [], [], 0
     for seen, real in zip(found, truth, strict=True):
         of_class, wanted = seen.classes == label, real.classes == label
@@ -62,14 +62,14 @@ def average_precision(
 def mean_average_precision(
     found: Sequence[Found], truth: Sequence[Truth], classes: int, overlap: float = 0.5
 ) -> float:
-    """Over the classes of which there is something to be found."""
+    """The mean over the classes that have boxes."""
     each = [average_precision(found, truth, label, overlap) for label in range(classes)]
     return float(np.nanmean(each))
 
 
 def _hits(boxes: np.ndarray, scores: np.ndarray, real: np.ndarray, counts: np.ndarray,
           overlap: float) -> np.ndarray:
-    """(n,) 1: right, 0: wrong, -1: left out; in the order in which they came."""
+    """(n,) 1: correct, 0: wrong, -1: ignored; in the given order."""
     hits = np.zeros(len(boxes), int)
     common = overlaps(boxes, real)
     free = counts.copy()
@@ -84,7 +84,7 @@ def _hits(boxes: np.ndarray, scores: np.ndarray, real: np.ndarray, counts: np.nd
 
 
 def _area(right: np.ndarray, total: int) -> float:
-    """Under precision over recall, for hits (1) and misses (0) from the surest on."""
+    """The area under precision over recall, for hits (1) and misses (0) in order of score."""
     if not len(right):
         return 0.0
     hits = np.cumsum(right)

@@ -1,4 +1,4 @@
-"""The network in torch: pictures in, boxes and class logits of every cell out."""
+"""The network in torch: images in, boxes and class logits of every cell out."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from ai_robot_tracking.training.layers import (
     network_layers,
 )
 
-RARE = -4.6  # logit of 1 %: at the start next to nothing is found, and training does not jump
+RARE = -4.6  # logit of 1 %: few detections at the start, which keeps training stable
 
 
 class Detector(nn.Module):
-    """Layers by `network_layers`; `forward` gives boxes (b, n, 4) and logits (b, n, classes).
+    """Layers from `network_layers`; `forward` returns boxes (b, n, 4), logits (b, n, classes).
 
     Boxes are left, top, right, bottom in px of the input. n counts the cells of all strides, the
     finest first, row by row.
@@ -64,7 +64,7 @@ class Detector(nn.Module):
         return self.parts[_key(layer.name)](sources[0])
 
     def convolution(self, layer: Layer) -> tuple[torch.Tensor, torch.Tensor]:
-        """Weights and bias of a CONV or HEAD layer, batch norm taken in."""
+        """Weights and bias of a CONV or HEAD layer, with batch norm folded in."""
         part = self.parts[_key(layer.name)]
         if layer.kind == HEAD:
             return part.weight.detach(), part.bias.detach()
@@ -75,7 +75,7 @@ class Detector(nn.Module):
 
 
 def cell_centres(rows: int, columns: int, stride: int, device=None) -> torch.Tensor:
-    """(rows * columns, 2) x and y of cells' middles, px of the input."""
+    """(rows * columns, 2) x and y of the cells' centres, px of the input."""
     y, x = torch.meshgrid(torch.arange(rows, device=device), torch.arange(columns, device=device),
                           indexing="ij")
     return (torch.stack([x, y], -1).reshape(-1, 2) + 0.5) * stride

@@ -1,4 +1,4 @@
-"""Images for surfaces, drawn at random: floors, walls, pictures on them, and the stop sign."""
+"""Random textures: floors, walls, pictures on them, and the stop sign."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ FLOOR_PX = 384
 
 
 def any_colour(rng: np.random.Generator, saturated: bool = False) -> tuple[float, float, float]:
-    """RGB, each 0..1."""
+    """A random colour, RGB, each 0..1."""
     saturation = rng.uniform(0.65, 1.0) if saturated else rng.uniform(0.0, 0.8)
     hsv = (rng.uniform(0, 360), saturation, rng.uniform(0.35 if saturated else 0.1, 1.0))
     colour = cv2.cvtColor(np.array([[hsv]], np.float32), cv2.COLOR_HSV2RGB)[0, 0]

@@ -1,4 +1,4 @@
-"""The training report: how the shipped model came to be, what it can do, what it cannot."""
+"""The training report: how the shipped model was trained, and its scores."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ CURVE_POINTS = 12
 
 
 def write_report(path: Path, count: int) -> float:
-    """Write MODEL-training.md and MODEL.png beside the model; mAP at an overlap of 0.5."""
+    """Write MODEL-training.md and MODEL.png next to the model; returns the mAP at an IoU of 0.5."""
     log = path.with_name(f"{path.stem}-training.json")
     try:
         model, done = Model(path), json.loads(log.read_text(encoding="utf-8"))
@@ -66,15 +66,15 @@ def _head(done: dict) -> list[str]:
         "Written by `train_detector.py report`; do not edit.", "",
         f"- A network of {done['rounds'][0]['weights']} weights; SHA-256 of the model "
         f"{done['model_sha256'][:16]}….",
-        "- A thing counts if both sides of its box are at least 12 px in a picture 640 px wide, "
-        "and at least half of it is seen.", ""]
+        "- An object counts if both sides of its box are at least 12 px in an image 640 px wide, "
+        "and at least half of it is visible.", ""]
     for number, one in enumerate(done["rounds"], start=1):
         plan = ", ".join(f"{name} {value:g}" for name, value in one["plan"].items())
         boxes = ", ".join(f"{count} {name}" for name, count in one["boxes"].items())
         first = one["first_seed"]
         lines += [
             f"## Round {number}", "",
-            f"- Learnt from {one['pictures']} pictures that our own simulator drew, seeds {first} "
+            f"- Trained on {one['pictures']} images rendered by our own simulator, seeds {first} "
             f"to {first + one['pictures'] - 1}, SHA-256 {one['pictures_sha256'][:16]}….",
             f"- Boxes to be found in them: {boxes}.",
             f"- Plan: {plan}.",
@@ -84,7 +84,7 @@ def _head(done: dict) -> list[str]:
 
 
 def _scores(judged: Judged, count: int) -> list[str]:
-    lines = [f"## Score on {count} pictures of worlds that it never saw", "",
+    lines = [f"## Score on {count} images of worlds that it never saw", "",
              f"Seeds {TEST_FIRST} to {TEST_FIRST + count - 1}.", "",
              f"| class | to be found | AP@0.5 | AP@{STRICT:g} |", "|---|---|---|---|"]
     for label, name in enumerate(CLASSES):
@@ -99,7 +99,7 @@ def _scores(judged: Judged, count: int) -> list[str]:
 def _confusions(judged: Judged) -> list[str]:
     table = confusion(judged, len(CLASSES))
     heads = [*CLASSES, "not found"]
-    lines = [f"## What is taken for what, at confidence {CONFIDENCE:g}", "",
+    lines = [f"## Confusion matrix at confidence {CONFIDENCE:g}", "",
              "| true \\ found | " + " | ".join(heads) + " |", "|---" * (len(heads) + 1) + "|"]
     for name, row in zip([*CLASSES, "nothing"], table):
         cells = [str(value) for value in row]
@@ -122,9 +122,9 @@ def _speed(model: Model, picture: Picture) -> list[str]:
     wall, cpu = milliseconds(model, picture.rgb)
     height, width = picture.rgb.shape[:2]
     return ["## Speed", "",
-            f"One picture of {width}x{height} px on one thread, fitted, run and decoded: "
-            f"{cpu:.1f} ms of processor time ({1000 / cpu:.0f} pictures/s on a core that does "
-            f"nothing else), {wall:.1f} ms by the clock at a load of {os.getloadavg()[0]:.1f} on "
+            f"One image of {width}x{height} px on one thread, fitted, run and decoded: "
+            f"{cpu:.1f} ms of processor time ({1000 / cpu:.0f} images/s on an "
+            f"idle core), {wall:.1f} ms by the clock at a load of {os.getloadavg()[0]:.1f} on "
             f"{os.cpu_count()} cores.", ""]
 
 
@@ -146,7 +146,7 @@ def _text(value: float) -> str:
 
 
 def _sheet(model: Model, pictures: list[Picture]) -> np.ndarray:
-    """The first pictures as the node annotates them, side by side, BGR."""
+    """The first images as the node annotates them, side by side, BGR."""
     tiles = []
     for picture in pictures:
         if picture.rgb.shape[0] * 4 != picture.rgb.shape[1] * 3 or not len(picture.labels):

@@ -1,4 +1,4 @@
-"""What stands around: floor, walls, lamps, and things that are none of the five."""
+"""The surroundings: floor, walls, lamps, and objects of none of the five classes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FLOOR_SIDE = 40.0  # m
 
 
 def surroundings(rng: np.random.Generator, room: float, images: Images) -> tuple[MeshPart, ...]:
-    """A floor, and mostly walls, at about `room` m from the camera in the origin."""
+    """A floor, and usually walls, about `room` m from the camera at the origin."""
     images["floor"] = pattern(rng, FLOOR_PX)
     side = FLOOR_SIDE if rng.random() < 0.3 else rng.uniform(1.0, 2.5) * room
     floor = primitive_part(Plane((0.0, 0.0, 1.0), (side, side)))
@@ -33,7 +33,7 @@ def surroundings(rng: np.random.Generator, room: float, images: Images) -> tuple
 
 
 def lamps(rng: np.random.Generator) -> list[LightDescription]:
-    """A sun or a ceiling light, mostly a weaker one beside the camera, sometimes a lamp nearby.
+    """A sun or ceiling light, usually a weaker one next to the camera, sometimes a lamp nearby.
 
     Without the second, a cylinder seen from its dark side at eye height is a plain rectangle.
     """
@@ -57,7 +57,7 @@ def _far_light(name: str, colour: np.ndarray, direction: tuple) -> LightDescript
 
 
 def air(rng: np.random.Generator) -> SceneDescription:
-    """Light from all sides, and what is seen where nothing stands."""
+    """Ambient light, and the background."""
     ambient = _rgba(rng.uniform(0.25, 0.8) * (1 - rng.uniform(0, 0.2, 3)))
     fog = Fog()
     if rng.random() < 0.08:
@@ -113,7 +113,7 @@ def _tree(rng: np.random.Generator, images: Images) -> Thing:
 
 
 def _other_sign(rng: np.random.Generator, images: Images) -> Thing:
-    """Round, three- or four-cornered, red often: what a stop sign must be told from."""
+    """Round, three- or four-cornered, often red: what a stop sign must be distinguished from."""
     radius = rng.uniform(0.08, 0.45)
     high = radius * rng.uniform(2.0, 7.0)
     sides = int(rng.choice([3, 4, 32]))
@@ -136,7 +136,7 @@ def _gate(rng: np.random.Generator, images: Images) -> Thing:
 
 
 def _walls(rng: np.random.Generator, room: float, images: Images) -> list[MeshPart]:
-    """Around the camera, with a picture on some."""
+    """Walls around the camera, some with a picture."""
     images["wall"] = pattern(rng)
     high, turn = rng.uniform(*WALL_HEIGHT), rng.uniform(-0.6, 0.6)
     parts = []

@@ -1,4 +1,4 @@
-"""How good a model is: on freshly drawn worlds, by way of the node's own code; and how quick."""
+"""A model's accuracy on newly rendered worlds, with the node's own code, and its speed."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from ai_robot_tracking.detection.model import Model
 from ai_robot_tracking.training.drawing import Picture
 from ai_robot_tracking.training.mean_average_precision import Found, Truth, overlaps
 
-LEAST = 0.01  # score from which on boxes are counted, so that the curve has its whole length
-CONFIDENCE, IOU = 0.25, 0.45  # of the node, for what it mixes up
+LEAST = 0.01  # lowest score of counted boxes, so that the curve is complete
+CONFIDENCE, IOU = 0.25, 0.45  # the node's, for the confusion matrix
 SPEED_RUNS = 40
 
 
 @dataclass(frozen=True)
 class Judged:
-    """What a model found in pictures, and what is in them."""
+    """What a model found in images, and their true boxes."""
 
     found: list[Found]
     truth: list[Truth]
 
 
 def judge(model: Model, pictures: Iterable[Picture]) -> Judged:
-    """Run the model on all pictures as the node does."""
+    """Run the model on all images as the node does."""
     found, truth = [], []
     for picture in pictures:
         seen = model.detect(picture.rgb, LEAST, IOU)
@@ -40,7 +40,7 @@ def judge(model: Model, pictures: Iterable[Picture]) -> Judged:
 def confusion(judged: Judged, classes: int) -> np.ndarray:
     """(classes + 1, classes + 1) counts at the node's confidence: rows true, columns found.
 
-    The last row is what is nothing, the last column what was not found.
+    The last row is for background, the last column for objects that were not found.
     """
     table = np.zeros((classes + 1, classes + 1), int)
     for seen, real in zip(judged.found, judged.truth):
@@ -63,7 +63,7 @@ def confusion(judged: Judged, classes: int) -> np.ndarray:
 
 
 def recall_by_size(judged: Judged, edges: tuple[float, ...]) -> list[tuple[int, int]]:
-    """For each span of box heights (px): how many are to be found, and how many were."""
+    """For each range of box heights (px): how many objects there are, and how many were found."""
     tallies = [[0, 0] for _ in edges[:-1]]
     for seen, real in zip(judged.found, judged.truth):
         sure = seen.scores >= CONFIDENCE
@@ -80,7 +80,7 @@ def recall_by_size(judged: Judged, edges: tuple[float, ...]) -> list[tuple[int, 
 
 
 def milliseconds(model: Model, picture: np.ndarray) -> tuple[float, float]:
-    """Median wall and mean processor time of one picture, fitted, run and decoded."""
+    """Median wall and mean processor time per image: fitted, run and decoded."""
     model.detect(picture, CONFIDENCE, IOU)
     walls, cpu = [], time.process_time()
     for _ in range(SPEED_RUNS):

@@ -1,4 +1,4 @@
-"""Triangles of what persons, cones and signs are made of, placed and coloured."""
+"""Triangle meshes of the parts of people, cones and signs, placed and coloured."""
 
 from __future__ import annotations
 
@@ -19,31 +19,31 @@ Rgb = tuple[float, float, float]  # each 0..1
 
 @dataclass(frozen=True)
 class Thing:
-    """One thing in a world: what of it is boxed, and what only holds it up."""
+    """One object in a world: the parts inside its box, and those that only hold it up."""
 
     label: str | None  # one of CLASSES; None: scenery
     own: tuple[MeshPart, ...]
     support: tuple[MeshPart, ...]
     pose: Pose
-    reach: float  # m, radius of the circle on the floor that it needs for itself
+    reach: float  # m, radius of the circle on the floor that it occupies
 
 
 def coloured(colour: Rgb, glow: float = 0.0, texture: str | None = None) -> Material:
-    """A dull surface; `glow` is the part of the colour that needs no light."""
+    """A matt surface; `glow` is the share of the colour that needs no light."""
     rgba = (*colour, 1.0)
     glowing = (*(glow * channel for channel in colour), 1.0)
     return Material(ambient=rgba, diffuse=rgba, emissive=glowing, texture=texture)
 
 
 def box(size: Vector3, at: Vector3, material: Material, rpy: Vector3 = (0, 0, 0)) -> MeshPart:
-    """A cuboid with its middle at `at` (m), turned by roll, pitch and yaw (rad)."""
+    """A cuboid with its centre at `at` (m), rotated by roll, pitch and yaw (rad)."""
     return _placed(primitive_part(Box(size)), at, rpy, material)
 
 
 def bar(
     radius: float, length: float, at: Vector3, material: Material, rpy: Vector3 = (0, 0, 0)
 ) -> MeshPart:
-    """A cylinder along z with its middle at `at`."""
+    """A cylinder along z with its centre at `at`."""
     return _placed(primitive_part(Cylinder(radius, length)), at, rpy, material)
 
 
@@ -57,7 +57,7 @@ def ball(
 
 
 def frustum(low: float, high: float, bottom: float, top: float, material: Material) -> MeshPart:
-    """The side of a cone about z: radii `low` and `high` (m) at heights `bottom` and `top` (m)."""
+    """The side of a cone about z, with radii `low`, `high` (m) at heights `bottom`, `top` (m)."""
     turn = np.linspace(0, 2 * math.pi, ROUND_SIDES + 1)
     circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
     rings = [np.column_stack([circle * radius, np.full(len(turn), height)])
@@ -75,7 +75,7 @@ def frustum(low: float, high: float, bottom: float, top: float, material: Materi
 
 def plate(sides: int, radius: float, at: Vector3, front: Material, back: Material
           ) -> tuple[MeshPart, MeshPart]:
-    """A thin regular polygon that faces +x, a flat side up; its front shows the whole image.
+    """A thin regular polygon that faces +x, with a flat side up; its front shows the whole image.
 
     `radius` (m) is to the corners. The front's image is as wide and high as the plate.
     """

@@ -1,4 +1,4 @@
-"""A made-up world for one picture: which things stand where, seen from where; all from a seed."""
+"""A random world for one image: its objects, their places and the camera, all from a seed."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView
 
 WIDTH_PX = 640
-HEIGHTS_PX = (480, 480, 480, 360)  # three of four pictures are 4:3
-APPARENT_PX = (16.0, 420.0)  # height in the picture that a thing is placed for
-EMPTY = 0.06  # of the worlds have none of the five
-SHARES = (0.21, 0.2, 0.16, 0.2, 0.23)  # of the classes; signs often find no place
-NEAREST = 0.35  # m between the camera and a thing's rim
-MOST_TURNED = math.radians(60)  # of a sign's face away from the camera
-ATTEMPTS = 12  # to find a thing a free place
+HEIGHTS_PX = (480, 480, 480, 360)  # three of four images are 4:3
+APPARENT_PX = (16.0, 420.0)  # height in the image for which an object is placed
+EMPTY = 0.06  # share of the worlds with no object of the five classes
+SHARES = (0.21, 0.2, 0.16, 0.2, 0.23)  # of the classes; often there is no room for a sign
+NEAREST = 0.35  # m between the camera and an object's edge
+MOST_TURNED = math.radians(60)  # largest angle of a sign's face from the camera
+ATTEMPTS = 12  # to find a free place for an object
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Stage:
 
 
 def make_stage(seed: int) -> Stage:
-    """The world of a seed; worlds of different seeds share nothing."""
+    """The world of a seed, independent of those of other seeds."""
     rng = np.random.default_rng((0x0B7EC75, seed))
     images: Images = {}
     room = math.exp(rng.uniform(math.log(2.5), math.log(14.0)))
@@ -67,7 +67,7 @@ def _view(rng: np.random.Generator) -> CameraView:
 def _place(
     rng: np.random.Generator, thing: Thing, view: CameraView, room: float, things: list[Thing]
 ) -> None:
-    """Add the thing where it keeps clear of the others; leave it out where it finds no place."""
+    """Add the object where it is clear of the others; omit it if there is no room."""
     parts = (*thing.own, *thing.support)
     tall = max(float(part.vertices[:, 2].max()) for part in parts)
     own_tall = float(np.ptp(np.concatenate([part.vertices[:, 2] for part in thing.own])))
@@ -93,7 +93,7 @@ def _place(
 
 
 def _in_view(view: CameraView, height: float, away: float) -> bool:
-    """Whether the middle of a thing, `height` m above the floor, is within the picture's rows."""
+    """Whether an object's centre, `height` m above the floor, is within the image's rows."""
     _, tilt, _ = view.pose.rpy()
     row = math.tan(math.atan2(height - view.pose.position[2], away) + tilt) * view.focal_length_px
     return abs(row) < view.height / 2

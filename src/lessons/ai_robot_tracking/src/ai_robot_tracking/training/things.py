@@ -1,4 +1,4 @@
-"""The five things that the detector tells apart, each made at random in its own frame.
+"""Random objects of the detector's five classes, each in its own frame.
 
 Frames: x forward (the side that faces the camera), z up, the floor at z = 0. Lengths in m.
 """
@@ -17,7 +17,7 @@ from bullet_sim.description import Material
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Pose
 
-Images = dict[str, np.ndarray]  # textures by name, as scenes have them
+Images = dict[str, np.ndarray]  # textures by name, as in scenes
 SKIN = ((0.96, 0.80, 0.69), (0.87, 0.67, 0.53), (0.72, 0.50, 0.36), (0.45, 0.29, 0.20),
         (0.30, 0.19, 0.13))
 HAIR = ((0.08, 0.06, 0.05), (0.25, 0.15, 0.08), (0.55, 0.40, 0.18), (0.6, 0.6, 0.6))
@@ -26,7 +26,7 @@ ORANGE = (1.0, 0.38, 0.02)
 
 
 def person(rng: np.random.Generator, images: Images) -> Thing:
-    """Standing or walking, from a child to a tall man, or as small as a model railway's."""
+    """Standing or walking, from a child to a tall man, or as small as on a model railway."""
     high = rng.uniform(1.5, 1.95) if rng.random() < 0.65 else rng.uniform(0.25, 1.5)
     top, trousers = coloured(any_colour(rng)), coloured(any_colour(rng))
     skin = coloured(SKIN[rng.integers(len(SKIN))])
@@ -38,7 +38,7 @@ def person(rng: np.random.Generator, images: Images) -> Thing:
 
 
 def _limbs(rng, high: float, wide: float, clothes: tuple[Material, ...]) -> list[MeshPart]:
-    """Two legs, and mostly two arms, which swing the other way."""
+    """Two legs, and usually two arms, which swing the other way."""
     top, trousers, skin = clothes
     stride, arms = rng.uniform(0, 0.55), rng.random() < 0.85
     sleeve = top if rng.random() < 0.7 else skin
@@ -55,7 +55,7 @@ def _limbs(rng, high: float, wide: float, clothes: tuple[Material, ...]) -> list
 
 
 def _head(rng, high: float, shoulder: float, skin: Material) -> list[MeshPart]:
-    """With its neck, and mostly hair or a cap."""
+    """A head with its neck, and usually hair or a cap."""
     radius = 0.065 * high
     middle = shoulder + 1.45 * radius
     parts = [bar(0.03 * high, 0.06 * high, (0, 0, shoulder + 0.01 * high), skin),
@@ -75,14 +75,14 @@ def _trunk(rng, top: Material, high: float, wide: float, leg: float, torso: floa
 
 
 def _limb(radius: float, length: float, joint: tuple, swing: float, material: Material) -> MeshPart:
-    """Hangs from its joint, swung forward by an angle (rad)."""
+    """A limb that hangs from its joint, swung forward by an angle (rad)."""
     middle = (joint[0] + math.sin(swing) * length / 2, joint[1],
               joint[2] - math.cos(swing) * length / 2)
     return bar(radius, length, middle, material, (0, -swing, 0))
 
 
 def cylinder(rng: np.random.Generator, images: Images) -> Thing:
-    """A plain, striped or patterned one, mostly upright."""
+    """A plain, striped or patterned cylinder, usually upright."""
     radius = rng.uniform(0.05, 0.45)
     length = min(radius * rng.uniform(1.2, 6.0), 1.9)
     if rng.random() < 0.1:
@@ -136,7 +136,7 @@ def stop_sign(rng: np.random.Generator, images: Images) -> Thing:
 
 
 def post(rng: np.random.Generator, radius: float, high: float) -> MeshPart:
-    """What a sign of that radius is screwed to."""
+    """A post for a sign of this radius."""
     material = coloured(any_colour(rng) if rng.random() < 0.3 else (0.55, 0.55, 0.57))
     thick = radius * rng.uniform(0.06, 0.1)
     if rng.random() < 0.5:
@@ -145,7 +145,7 @@ def post(rng: np.random.Generator, radius: float, high: float) -> MeshPart:
 
 
 def traffic_light(rng: np.random.Generator, images: Images) -> Thing:
-    """Three lamps, of which mostly one is lit, in a housing on a post or hung up."""
+    """Three lamps, usually one of them lit, in a housing on a post or hanging."""
     wide = rng.uniform(0.2, 0.4) if rng.random() < 0.7 else rng.uniform(0.05, 0.2)
     pitch, lamp = wide * rng.uniform(0.85, 1.05), wide * rng.uniform(0.3, 0.42)
     long = 3 * pitch + 0.1 * wide
@@ -178,4 +178,4 @@ MAKERS: dict[str, Callable[[np.random.Generator, Images], Thing]] = {
     "stop sign": stop_sign,
     "traffic light": traffic_light,
 }
-FACING = frozenset({"stop sign", "traffic light"})  # what is only told from its front
+FACING = frozenset({"stop sign", "traffic light"})  # recognisable only from the front

@@ -1,4 +1,4 @@
-"""Trains the network on one thread: the same pictures and seed give the same bytes."""
+"""Trains the network on one thread: the same images and seed give the same bytes."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ from ai_robot_tracking.training.network import Detector, cell_centres
 
 SMALL = (160, 192)  # height, width, px
 WHOLE = (INPUT_HEIGHT, INPUT_WIDTH)
-MOST_BOXES = 16  # of one picture that are learnt from
+MOST_BOXES = 16  # per image that are used
 REPORT_STEPS = 50
 
 
 @dataclass(frozen=True)
 class Plan:
-    """How it is trained; all of it is in the report."""
+    """The training's parameters, all listed in the report."""
 
     seed: int = 0
     steps: int = 5200
-    until: int = 5200  # the step at which it really ends; rates are those of all steps
-    batch: int = 16  # pictures a step
-    learning_rate: float = 3e-3  # the highest; rises in `warm_steps`, then falls as a cosine
-    last_rate: float = 0.01  # of the highest
+    until: int = 5200  # the step at which it stops; the rates are planned for all `steps`
+    batch: int = 16  # images per step
+    learning_rate: float = 3e-3  # the highest; rises during `warm_steps`, then falls as a cosine
+    last_rate: float = 0.01  # share of the highest
     warm_steps: int = 100
     weight_decay: float = 0.02
-    averaging: float = 0.995  # of the weights that are kept: their mean over the last steps
-    small: float = 0.55  # first part of the steps, with pictures of SMALL: quicker
-    calm: float = 0.1  # last part of the steps, with pictures as they were drawn
+    averaging: float = 0.995  # decay of the running mean of the weights, which is the result
+    small: float = 0.55  # first share of the steps, with images of size SMALL: faster
+    calm: float = 0.1  # last share of the steps, with images that are not augmented
 
     def as_table(self) -> dict[str, float]:
         """Names and values, for the report."""
@@ -60,9 +60,9 @@ class Progress:
 
 def train(pictures: PictureSet, plan: Plan, say: Callable[[Progress, Detector], None],
           start: Detector | None = None) -> Detector:
-    """The averaged network, ready to be exported; `say` also gets it as it is so far.
+    """The averaged network, ready for export; `say` also gets its current state.
 
-    With `start` it goes on from that network, which is changed.
+    With `start` it continues from that network, which is modified.
     """
     torch.manual_seed(plan.seed)
     torch.use_deterministic_algorithms(True)
@@ -92,7 +92,7 @@ def train(pictures: PictureSet, plan: Plan, say: Callable[[Progress, Detector], 
 
 
 class _Feed:
-    """Batches in an order that the seed alone decides."""
+    """Batches in an order that only depends on the seed."""
 
     def __init__(self, pictures: PictureSet, plan: Plan):
         self._pictures, self._plan = pictures, plan
@@ -121,7 +121,7 @@ class _Feed:
         return pixels.contiguous(memory_format=torch.channels_last), torch.from_numpy(truth)
 
     def _order(self, turn: int) -> np.ndarray:
-        """In which the pictures come the turn-th time."""
+        """The order of the images in epoch `turn`."""
         if self._turn != turn:
             rng = np.random.default_rng((self._plan.seed, 1, turn))
             self._turn, self._shuffled = turn, rng.permutation(len(self._pictures))
@@ -135,7 +135,7 @@ def _centres(shape: tuple[int, int]) -> torch.Tensor:
 
 
 def _groups(network: Detector, decay: float) -> list[dict]:
-    """Biases and norms are not made smaller."""
+    """Parameter groups: no weight decay for biases and norms."""
     large = [p for p in network.parameters() if p.ndim > 1]
     small = [p for p in network.parameters() if p.ndim <= 1]
     return [{"params": large, "weight_decay": decay}, {"params": small, "weight_decay": 0.0}]

@@ -1,4 +1,4 @@
-"""One training from pictures to files: the model, its class names, and what was done, as JSON."""
+"""One training, from images to files: the model, its class names, and a log as JSON."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from ai_robot_tracking.training.training import Plan, Progress, train
 def run_training(
     folder: Path, model: Path, pictures: int, plan: Plan, start: Path | None = None
 ) -> None:
-    """Write MODEL.onnx, .yaml, .pt and -training.json; TrainingError, of one line, if it fails.
+    """Write MODEL.onnx, .yaml, .pt and -training.json; TrainingError (one line) if it fails.
 
-    `start` is the .pt file of an earlier training that this one goes on from.
+    `start` is the .pt file of an earlier training to continue from.
     """
     if model.suffix != ".onnx":
         raise TrainingError(f"{model}: the model's name must end with .onnx")
@@ -40,18 +40,18 @@ def run_training(
 
 
 def read_drawn(folder: Path, pictures: int) -> PictureSet:
-    """So many pictures to learn from, or TrainingError."""
+    """This many training images; TrainingError if there are fewer."""
     try:
         drawn = read_sets(folder, "train", pictures)
     except FileNotFoundError as error:
         raise TrainingError(str(error)) from error
     if len(drawn) < pictures:
-        raise TrainingError(f"{folder}: {len(drawn)} pictures, not {pictures}; draw them first")
+        raise TrainingError(f"{folder}: {len(drawn)} images, not {pictures}; draw them first")
     return drawn
 
 
 def read_start(path: Path) -> tuple[Detector, list[dict]]:
-    """The network of an earlier training and what was done for it."""
+    """The network of an earlier training and its log."""
     log = path.with_name(f"{path.stem}-training.json")
     network = Detector()
     try:
@@ -65,7 +65,7 @@ def read_start(path: Path) -> tuple[Detector, list[dict]]:
 
 def training_round(network: Detector, drawn: PictureSet, plan: Plan, curve: list[Progress],
                    cpu_time: float) -> dict:
-    """What was done, for the report."""
+    """The training's log, for the report."""
     return {
         "plan": plan.as_table(),
         "pictures": len(drawn),
@@ -82,7 +82,7 @@ def training_round(network: Detector, drawn: PictureSet, plan: Plan, curve: list
 
 
 def write_files(network: Detector, model: Path, rounds: list[dict]) -> None:
-    """The model, its class names, and what was done for it."""
+    """Write the model, its class names, and its log."""
     try:
         export(network, model, {"description": "trained on pictures of bullet_sim's renderer"})
     except ExportError as error:
@@ -115,7 +115,7 @@ def _digest(drawn: PictureSet) -> str:
 
 
 def _processor() -> str:
-    """What the machine calls its processor, and what torch uses of it."""
+    """The processor's name, and the instruction set that torch uses."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

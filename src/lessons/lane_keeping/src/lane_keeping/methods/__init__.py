@@ -1,4 +1,4 @@
-"""One file for each way to find the lane; all have `plan(mask, view, settings) -> Plan | None`.
+"""One module per lane detection method; each has `plan(mask, view, settings) -> Plan | None`.
 
 mask: (rows, columns) uint8 of the region of interest, 255 where a line may be. None: no lane.
 """
@@ -12,7 +12,7 @@ from lane_keeping.settings import METHODS
 
 
 def method_called(name: str) -> Callable:
-    """The `plan` of this method; ValueError lists those there are."""
+    """The `plan` of this method; ValueError lists the known ones."""
     if name not in METHODS:
         raise ValueError(f"no method '{name}'; known: {', '.join(METHODS)}")
     return import_module(f"lane_keeping.methods.{name}").plan

@@ -1,7 +1,7 @@
 """Banded centroids: in each band of rows, the centroid of the pixels on either side of the middle.
 
-The middle moves along from band to band with what was found. Nothing is searched for: that makes
-it quick, and lets every stray pixel pull.
+The middle follows from band to band what was found. There is no search, which makes it fast, but
+lets every stray pixel have an effect.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ BANDS = 12
 
 
 def centroid(mask: np.ndarray) -> float | None:
-    """The mean column of a mask's pixels, or None when it has none."""
+    """The mean column of a mask's pixels, or None if it has none."""
     moments = cv2.moments(mask, binaryImage=True)
     return moments["m10"] / moments["m00"] if moments["m00"] else None
 

@@ -1,7 +1,7 @@
-"""Column scan: from below, each column's free road up to the first line pixel.
+"""Column scan: each column's free road, from the bottom up to the first line pixel.
 
-The free road ends at the left line in the columns left of its deepest place, and at the right
-line in those right of it. Where a line leads along the columns, they say little about it.
+It ends at the left line in the columns left of the deepest one, and at the right line in those
+right of it. Where a line runs along the columns, they say little about it.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from lane_keeping.road_view import RoadView
 from lane_keeping.settings import Settings
 from lane_keeping.steering import Plan, steer_by_error
 
-SMOOTHING = 31  # columns; one free column between two stones is no road
-LEAST_COLUMNS = 60  # a line in fewer leads along the columns, and its first pixels say little
+SMOOTHING = 31  # columns; one free column between two spots is not road
+LEAST_COLUMNS = 60  # a line in fewer runs along the columns, and its first pixels say little
 
 
 def free_rows(mask: np.ndarray) -> np.ndarray:
@@ -33,9 +33,9 @@ def line_rows(mask: np.ndarray, free: np.ndarray) -> np.ndarray:
 
 
 def deepest(free: np.ndarray) -> int:
-    """The column to which the free road deepens from the picture's middle.
+    """The column to which the free road deepens from the image's middle.
 
-    Not simply the deepest one: beside the lane, outside of its lines, there is nothing either.
+    Not simply the deepest one: outside the lane's lines, the road is free too.
     """
     smooth = np.convolve(np.pad(free, SMOOTHING // 2, "edge"), np.ones(SMOOTHING), "valid")
     column, last = len(free) // 2, len(free) - 1
@@ -52,7 +52,7 @@ def plan(mask: np.ndarray, view: RoadView, settings: Settings) -> Plan | None:
     """See the package for the common signature."""
     free = free_rows(mask)
     split, rows = deepest(free), line_rows(mask, free)
-    hit = np.flatnonzero((free < len(mask)) & (free > 0))  # at 0 the line has left below
+    hit = np.flatnonzero((free < len(mask)) & (free > 0))  # 0: the line leaves at the bottom
     points = np.stack([hit, rows[hit]], axis=1)
     sides = [
         fit_side(part) if len(part) >= LEAST_COLUMNS else None

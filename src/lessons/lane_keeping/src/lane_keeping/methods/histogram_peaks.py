@@ -1,7 +1,7 @@
-"""Histogram peaks: a column histogram for each strip of rows; the two peaks that make a lane.
+"""Histogram peaks: for each strip of rows a column histogram, and its two peaks that form a lane.
 
-Of all pairs of peaks that are about a lane apart, the one nearest to the centre line so far is
-taken; a single peak is the side that it is nearer to.
+Of all pairs of peaks about a lane apart, the one nearest to the centre line so far is used; a
+single peak is taken as the side that it is nearer to.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from lane_keeping.steering import Plan, steer_by_error
 
 STRIPS = 16
 SMOOTHING = 9  # columns
-LEAST = 0.25  # share of the strip's rows that a peak holds at least
+LEAST = 0.25  # least share of the strip's rows in a peak
 CLOSEST, FARTHEST = 0.75, 1.5  # lane widths between the two peaks of a pair
 
 
 def peaks(histogram: np.ndarray, least: float) -> np.ndarray:
-    """Columns of the middles of all runs where the smoothed histogram is at least so high."""
+    """The middle columns of all runs in which the smoothed histogram reaches `least`."""
     smooth = np.convolve(histogram, np.ones(SMOOTHING) / SMOOTHING, "same")
     edges = np.flatnonzero(np.diff(np.concatenate([[0], smooth >= least, [0]])))
     return (edges[::2] + edges[1::2] - 1) / 2
@@ -29,7 +29,7 @@ def peaks(histogram: np.ndarray, least: float) -> np.ndarray:
 def choose(
     columns: np.ndarray, middle: float, width: float
 ) -> tuple[float | None, float | None]:
-    """The left and the right line's column among the peaks, given where the lane should be."""
+    """The columns of the left and right line among the peaks, given where the lane should be."""
     pairs = [
         (abs((a + b) / 2 - middle) + abs(b - a - width), a, b)
         for i, a in enumerate(columns)

@@ -1,8 +1,8 @@
 """Pure pursuit: the lane as a path in metres on the ground, and the arc to a goal on that path.
 
-From the lane's middle the rows are looked along to either side up to the first line pixel; what is
-about half a lane away on the ground counts. Steering knows the distance ahead, so that one number
-does for slow and for quick, which the law on the picture's error does not.
+From the lane's middle, rows are searched to either side up to the first line pixel; those about
+half a lane away on the ground count. Steering uses the distance ahead in metres, so that one
+parameter works at any speed, unlike the law on the image's error.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from lane_keeping.road_view import RoadView
 from lane_keeping.settings import Settings
 from lane_keeping.steering import Plan, steer_by_pursuit
 
-ROWS = 30  # that are looked along
+ROWS = 30  # searched
 NEAREST, FARTHEST = 0.6, 1.6  # half lane widths between the middle and a line
-FIRST = 0.2, 2.0  # the same for the first line that is found: the robot may be beside the middle
+FIRST = 0.2, 2.0  # the same for the first line found: the robot may be off the middle
 
 
 def runs(row: np.ndarray) -> np.ndarray:
@@ -26,11 +26,11 @@ def runs(row: np.ndarray) -> np.ndarray:
 
 
 def look_along(mask: np.ndarray, view: RoadView) -> tuple[np.ndarray, np.ndarray]:
-    """(n, 2) pixels of the left and of the right line, from the bottom row upwards."""
+    """(n, 2) pixels of the left and of the right line, from the bottom row up."""
     middle, found, reach = mask.shape[1] / 2, ([], []), FIRST
     for row in np.linspace(len(mask) - 1, 0, ROWS).astype(int):
         lines, half = runs(mask[row]), view.lane_width_px(row) / 2
-        if half <= 0:  # the horizon and what is above
+        if half <= 0:  # at or above the horizon
             break
         aside = (lines - middle) / half  # left negative
         left = lines[(-reach[1] < aside) & (aside < -reach[0])][-1:]
@@ -44,7 +44,7 @@ def look_along(mask: np.ndarray, view: RoadView) -> tuple[np.ndarray, np.ndarray
 
 
 def goal_on(lane: Lane, view: RoadView, distance: float) -> tuple[float, float]:
-    """The point (ahead, left) in m of the centre line that is so far from the axle, or nearly."""
+    """The centre line's point (ahead, left), m, at about this distance (m) from the axle."""
     rows = np.linspace(0, view.rows - 1, 60)
     path = view.to_ground(np.stack([np.polyval(lane.centre.curve, rows), rows], axis=1))
     best = np.abs(np.hypot(path[:, 0], path[:, 1]) - distance).argmin()

@@ -1,6 +1,6 @@
-"""Segmented Hough: straight pieces of lines in each of a few segments of rows, joined to curves.
+"""Segmented Hough: straight line pieces in each of a few segments of rows, joined to curves.
 
-In so low a segment a bend is nearly straight, so that Hough's straight pieces can follow it.
+In such a low segment a bend is nearly straight, so Hough's straight pieces can follow it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def pieces(edges: np.ndarray, low: int, high: int) -> np.ndarray:
 def plan(mask: np.ndarray, view: RoadView, settings: Settings) -> Plan | None:
     """See the package for the common signature."""
     outline = cv2.morphologyEx(mask, cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8))
-    outline[:, [0, 1, -2, -1]] = 0  # where the picture ends is no line
+    outline[:, [0, 1, -2, -1]] = 0  # the image's border is not a line
     borders = np.linspace(len(mask), 0, SEGMENTS + 1).astype(int)
     middle, found = mask.shape[1] / 2, ([], [])
     for low, high in zip(borders[1:], borders[:-1]):
@@ -52,7 +52,7 @@ def plan(mask: np.ndarray, view: RoadView, settings: Settings) -> Plan | None:
 def _middle(
     lines: np.ndarray, on_left: np.ndarray, before: float, view: RoadView, row: float
 ) -> float:
-    """The lane's middle at the upper end of a segment: there the next segment is divided."""
+    """The lane's middle at a segment's upper end, which divides the next segment."""
     half = view.lane_width_px(row) / 2
     left, right = lines[on_left, 2], lines[~on_left, 2]
     if len(left) and len(right):

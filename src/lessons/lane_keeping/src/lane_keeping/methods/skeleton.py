@@ -1,6 +1,6 @@
-"""Skeleton: the lines thinned to their middle, and the longest branch on either side of the lane.
+"""Skeleton: lines thinned to their middle, and the longest branch on either side of the lane.
 
-Thinning is Lantuejoul's: what an opening takes away from the mask while it is eroded step by step.
+Thinning is Lantuejoul's: what openings remove from the mask while it is eroded step by step.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from lane_keeping.settings import Settings
 from lane_keeping.steering import Plan, steer_by_error
 
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-MAX_STEPS = 40  # a line is never wider than twice so many px
+MAX_STEPS = 40  # a line is at most twice as wide, px
 
 
 def thin(mask: np.ndarray) -> np.ndarray:
-    """The skeleton of a mask, 255 on it. It may have gaps of a pixel or two."""
+    """The skeleton of a mask, as a mask. It may have gaps of a pixel or two."""
     left, skeleton = mask.copy(), np.zeros_like(mask)
     for _ in range(MAX_STEPS):
         eroded = cv2.erode(left, CROSS)
@@ -30,7 +30,7 @@ def thin(mask: np.ndarray) -> np.ndarray:
 
 
 def branches(skeleton: np.ndarray, min_pixels: int) -> list[np.ndarray]:
-    """(n, 2) pixels of each connected branch of at least so many; gaps of 4 px are bridged."""
+    """(n, 2) pixels of each branch with at least `min_pixels`; gaps of 4 px are bridged."""
     joined = cv2.dilate(skeleton, np.ones((5, 5), np.uint8))
     count, labels, _, _ = cv2.connectedComponentsWithStats(joined, connectivity=8)
     rows, columns = np.nonzero(skeleton)
@@ -54,7 +54,7 @@ def plan(mask: np.ndarray, view: RoadView, settings: Settings) -> Plan | None:
 
 
 def _foot(branch: np.ndarray) -> float:
-    """The column where a branch begins below."""
+    """The column of a branch's lower end."""
     low = branch[:, 1] > branch[:, 1].max() - 10
     return float(branch[low, 0].mean())
 

@@ -1,4 +1,4 @@
-"""Sliding windows: from the histogram's two peaks upwards, each window centred on the last one."""
+"""Sliding windows: from the histogram's two peaks upwards, each window follows the one below."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from lane_keeping.steering import Plan, steer_by_error
 
 
 def bases(mask: np.ndarray, min_pixels: int) -> tuple[int | None, int | None]:
-    """The columns of most line pixels, in the left and the right half of the mask's lower half.
+    """The columns with most line pixels in the mask's lower half, one per side.
 
-    None for a half whose best column and its neighbours hold fewer than min_pixels.
+    None for a side whose best column and its neighbours have fewer than min_pixels.
     """
     histogram = np.count_nonzero(mask[mask.shape[0] // 2 :], axis=0)
-    histogram = np.convolve(histogram, np.ones(9, int), "same")  # a slanting line fills many
+    histogram = np.convolve(histogram, np.ones(9, int), "same")  # a slanted line spreads over many
     middle = len(histogram) // 2
     found = []
     for begin, half in ((0, histogram[:middle]), (middle, histogram[middle:])):
@@ -29,9 +29,9 @@ def bases(mask: np.ndarray, min_pixels: int) -> tuple[int | None, int | None]:
 def climb(
     mask: np.ndarray, base: int, settings: Settings
 ) -> tuple[Side | None, list[tuple[int, int, int, int]]]:
-    """Follow one line from its base upwards: its curve, and the windows that were looked into.
+    """Follow one line from its base upwards: its curve, and the windows searched.
 
-    A window without enough pixels leaves the next one above it.
+    After a window without enough pixels, the next one is straight above it.
     """
     rows, columns = mask.shape
     edges = np.unique(np.linspace(0, rows, settings.windows + 1).astype(int))[::-1]
@@ -48,7 +48,7 @@ def climb(
 
 
 def plan(mask: np.ndarray, view: RoadView, settings: Settings) -> Plan | None:
-    """The page's way; see the package for the common signature."""
+    """The tutorial's method; see the package for the common signature."""
     sides, boxes = [], []
     for base in bases(mask, settings.min_pixels):
         side, windows = (None, []) if base is None else climb(mask, base, settings)

@@ -1,1 +1,1 @@
-"""The lane's world: what is on and beside it, its painted ground, its files."""
+"""The lane's world: crossings and scenery, the painted ground, the files."""

@@ -1,4 +1,4 @@
-"""lane.world and the model of its ground, as files: same input, same pictures and text."""
+"""Writes lane.world and the model of its ground, reproducibly."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from lane_keeping.world.ground import Plane, draw_ground, plane_of
 from lane_keeping.world.scenery import Crossings, Lamp, Scenery, Tree, Zebra
 
 MODEL = "lane_track"
-PERSON_RADIUS, PERSON_HEIGHT = 0.12, 0.9  # m, of what can be bumped into
-PERSON_RATE = 50.0  # Hz, of the odometry that says where a person is
-CLOTHES = ("1 0.35 0", "0.85 0 0.6", "0 0.35 0.9", "0.8 0 0")  # one person each, then again
+PERSON_RADIUS, PERSON_HEIGHT = 0.12, 0.9  # m, of the collision shape
+PERSON_RATE = 50.0  # Hz, of a person's odometry
+CLOTHES = ("1 0.35 0", "0.85 0 0.6", "0 0.35 0.9", "0.8 0 0")  # one per person, then repeated
 TROUSERS, SKIN, BARK, LEAVES, METAL = "0.1 0.15 0.6", "0.9 0.7 0.55", "0.35 0.25 0.15", (
     "0.2 0.4 0.15"), "0.45 0.47 0.5"
 
 
 def write_world(track_file: TrackFile, crossings: Crossings, scenery: Scenery, folder: Path,
                 shade: bool = True) -> list[Path]:
-    """Write models/lane_track and two worlds below a folder; returns the files.
+    """Write models/lane_track and two worlds into a folder; returns the files.
 
     worlds/lane.world has people, worlds/lane_empty.world has none.
     """
@@ -47,7 +47,7 @@ def write_world(track_file: TrackFile, crossings: Crossings, scenery: Scenery, f
 
 
 def person_begin(zebra: Zebra, crossings: Crossings) -> tuple[float, float, float]:
-    """x, y (m) and yaw (rad) at which a person waits: to the right, looking across the road."""
+    """x, y (m) and yaw (rad) of a waiting person: on the right, looking across the road."""
     yaw = zebra.heading + math.pi / 2
     x = zebra.x - crossings.far * math.cos(yaw)
     y = zebra.y - crossings.far * math.sin(yaw)
@@ -79,7 +79,7 @@ def _lamp(number: int, lamp: Lamp) -> str:
 
 
 def _person(number: int, zebra: Zebra, crossings: Crossings) -> str:
-    """Walked by commands on /pedestrian_N/cmd_vel; it floats, so that nothing slows it."""
+    """A person moved by commands on /pedestrian_N/cmd_vel; floats, so that nothing slows it."""
     x, y, yaw = person_begin(zebra, crossings)
     shirt = CLOTHES[(number - 1) % len(CLOTHES)]
     visuals = "\n".join(_visual(*part) for part in (
@@ -96,7 +96,7 @@ def _person(number: int, zebra: Zebra, crossings: Crossings) -> str:
 
 
 def _static(name: str, x: float, y: float, parts: Iterable[tuple]) -> str:
-    """A model that stands; each part: name, pose, shape, colour, and whether it can be hit."""
+    """A static model; each part: name, pose, shape, colour, and whether it has a collision."""
     inner = []
     for part, pose, shape, colour, solid in parts:
         inner.append(_visual(part, pose, shape, colour))

@@ -1,4 +1,4 @@
-"""The picture that is painted on the ground: lawn, road, lane lines, zebra crossings, shade."""
+"""The ground's texture: lawn, road, lane lines, zebra crossings, shade."""
 
 from __future__ import annotations
 
@@ -12,35 +12,35 @@ from racecar_description.track.track_file import TrackFile
 
 from lane_keeping.world.scenery import Crossings, Scenery, Zebra
 
-PX_PER_M, FINE = 160, 2  # drawn FINE times as large and shrunk, so that edges are smooth
+PX_PER_M, FINE = 160, 2  # drawn FINE times as large, then shrunk, for smooth edges
 MARGIN = 1.3  # m of ground round the lane's middle
-VERGE = 0.35  # m of road outside of the lane's lines
+VERGE = 0.35  # m of road outside the lane's lines
 STRIPE = 0.1  # m, width of a zebra's stripes and of the gaps between them
-MOWN = 0.5  # m, width of the lawn's stripes: something to see the speed by
-# RGB. Lawn and road are as bright as each other: only lines are darker than what is around them.
+MOWN = 0.5  # m, width of the lawn's stripes, which make the speed visible
+# RGB. Lawn and road are equally bright: only lines are darker than their surroundings.
 LAWNS, ROAD, LINE, WHITE = ((120, 139, 105), (125, 144, 110)), (127, 127, 129), (30, 30, 33), (
     236, 236, 236)
-TRUNK, POLE, LAMP_HEAD = 0.12, 0.07, 0.16  # m, widths of what casts shade
+TRUNK, POLE, LAMP_HEAD = 0.12, 0.07, 0.16  # m, widths of objects that cast shade
 PENUMBRA = 0.04  # m
 
 
 @dataclass(frozen=True)
 class Plane:
-    """Part of the ground that is painted; m in the world, sides along x and y."""
+    """The painted part of the ground; m in the world, sides along x and y."""
 
-    x: float  # its middle
+    x: float  # its centre
     y: float
     width: float
     height: float
 
     def to_px(self, points: np.ndarray) -> np.ndarray:
-        """World points (n, 2) in pixels (n, 2) of the fine picture; up is +y, right is +x."""
+        """World points (n, 2) in pixels (n, 2) of the fine image; up is +y, right is +x."""
         corner = (self.x - self.width / 2, self.y + self.height / 2)
         return (np.asarray(points, float).reshape(-1, 2) - corner) * (_SCALE, -_SCALE)
 
 
 def plane_of(track_file: TrackFile) -> Plane:
-    """The ground below a track, with its margin."""
+    """The ground of a track, with its margin."""
     points = np.array(build_track(track_file).points(0.1))
     low, high = points.min(axis=0) - MARGIN, points.max(axis=0) + MARGIN
     low, high = np.round(low, 1), np.round(high, 1)
@@ -48,7 +48,7 @@ def plane_of(track_file: TrackFile) -> Plane:
 
 
 def draw_ground(track_file: TrackFile, crossings: Crossings, scenery: Scenery | None) -> np.ndarray:
-    """The plane's picture, RGB uint8; without scenery there is no shade."""
+    """The plane's texture, RGB uint8; without scenery there is no shade."""
     plane = plane_of(track_file)
     columns, rows = round(plane.width * _SCALE), round(plane.height * _SCALE)
     mown = (np.arange(columns) // round(MOWN * _SCALE)) % 2
@@ -77,7 +77,7 @@ def _draw(image: np.ndarray, plane: Plane, points: list, colour: object, width: 
 
 def _line(image: np.ndarray, points_px: np.ndarray, colour: object, thick_px: int,
           closed: bool = False) -> None:
-    """Through points between pixels; OpenCV takes them in sixteenths."""
+    """A line through subpixel points, which OpenCV takes in sixteenths."""
     cv2.polylines(image, [np.round(points_px * 16).astype(np.int32)], closed, colour, thick_px,
                   cv2.LINE_AA, 4)
 
@@ -108,17 +108,17 @@ def _shade(shape: tuple[int, int], plane: Plane, scenery: Scenery) -> np.ndarray
 
 def _stroke(cover: np.ndarray, plane: Plane, scenery: Scenery, at: tuple[float, float],
             height: float, width: float) -> None:
-    """Shade of something thin and upright."""
+    """The shade of something thin and upright."""
     ends = plane.to_px([at, scenery.shadow_of(*at, height)])
     _line(cover, ends, 255, round(width * _SCALE))
 
 
 def _blot(cover: np.ndarray, plane: Plane, scenery: Scenery, at: tuple[float, float],
           height: float, radius: float) -> None:
-    """Shade of a ball: an ellipse, longer along the sun's way."""
+    """The shade of a ball: an ellipse, elongated along the sun's direction."""
     centre = np.round(plane.to_px([scenery.shadow_of(*at, height)])[0]).astype(int)
     level = math.hypot(*scenery.sun[:2])
     longer = math.hypot(level, scenery.sun[2]) / abs(scenery.sun[2])
-    turned = -math.degrees(math.atan2(scenery.sun[1], scenery.sun[0]))  # the picture's y is down
+    turned = -math.degrees(math.atan2(scenery.sun[1], scenery.sun[0]))  # the image's y is down
     axes = (round(radius * longer * _SCALE), round(radius * _SCALE))
     cv2.ellipse(cover, tuple(int(value) for value in centre), axes, turned, 0, 360, 255, -1)

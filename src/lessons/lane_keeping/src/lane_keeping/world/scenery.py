@@ -1,4 +1,4 @@
-"""What is on and beside the lane, from YAML: zebra crossings, trees, lamps, and how shade falls."""
+"""The YAML files about the lane: zebra crossings, trees, lamps, and the sun's direction."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from lane_keeping.settings import SettingsError, read_table
 
 @dataclass(frozen=True)
 class Zebra:
-    """Middle of a crossing, m, and where the lane leads there, rad."""
+    """A crossing's centre, m, and the lane's heading there, rad."""
 
     x: float
     y: float
@@ -33,7 +33,7 @@ class Crossings:
 
 @dataclass(frozen=True)
 class Tree:
-    """Place, radius of the crown, height of the crown's middle; m."""
+    """Place, radius of the crown, height of the crown's centre; m."""
 
     x: float
     y: float
@@ -54,8 +54,8 @@ class Lamp:
 class Scenery:
     """lane_scenery.yaml, key by key."""
 
-    sun: tuple[float, float, float]  # where its light goes
-    shade: float  # share of the light that is left in the shade
+    sun: tuple[float, float, float]  # direction of its light
+    shade: float  # share of the light that remains in the shade
     trees: tuple[Tree, ...]
     lamps: tuple[Lamp, ...]
 
@@ -65,7 +65,7 @@ class Scenery:
 
 
 def load_crossings(path: Path | None = None) -> Crossings:
-    """The package's own, or another file; SettingsError names file and key."""
+    """From the package's own file, or another one; SettingsError names file and key."""
     path = path or config_folder() / "crossings.yaml"
     values = _read_keys(path, [field.name for field in fields(Crossings)])
     lengths = {name: _number(path, name, values[name], least=0.0)
@@ -74,7 +74,7 @@ def load_crossings(path: Path | None = None) -> Crossings:
 
 
 def load_scenery(path: Path | None = None) -> Scenery:
-    """The package's own, or another file; SettingsError names file and key."""
+    """From the package's own file, or another one; SettingsError names file and key."""
     path = path or config_folder() / "lane_scenery.yaml"
     values = _read_keys(path, [field.name for field in fields(Scenery)])
     sun = values["sun"]
@@ -89,7 +89,7 @@ def load_scenery(path: Path | None = None) -> Scenery:
 
 
 def config_folder() -> Path:
-    """The package's own."""
+    """The package's config folder."""
     return Path(rospkg.RosPack().get_path("lane_keeping")) / "config"
 
 

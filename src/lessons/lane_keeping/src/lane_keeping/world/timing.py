@@ -1,7 +1,7 @@
-"""What a method costs: processor time for a picture, on pictures of the ground round the lane.
+"""A method's processor time per image, on images of the ground along the lane.
 
-The pictures are the painted ground alone, seen as the car's camera sees it and drawn here, so that
-the figure needs no simulator and does not depend on what else the machine does.
+The images show only the painted ground, as the car's camera sees it. They are drawn here, so the
+measurement needs no simulator and does not depend on the machine's other load.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ SKY = (210, 190, 160)  # BGR
 
 
 def ms_a_frame(method: str) -> float:
-    """Median processor time (ms) from a picture to its command, on one thread."""
+    """Median processor time (ms) from an image to its command, on one thread."""
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)
     settings = load_settings(config_folder() / "lane_keeping.yaml")
@@ -46,7 +46,7 @@ def ms_a_frame(method: str) -> float:
 
 
 def pictures(view: RoadView) -> list[np.ndarray]:
-    """BGR pictures (480, 640, 3) from places all round the lane's middle."""
+    """BGR images (480, 640, 3) from places all along the lane's middle."""
     tracks = Path(rospkg.RosPack().get_path("evaluation")) / "tracks"
     track_file = load_track_file(tracks / "lane.yaml")
     ground = draw_ground(track_file, load_crossings(), load_scenery())[..., ::-1].copy()

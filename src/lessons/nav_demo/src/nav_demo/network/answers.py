@@ -7,22 +7,22 @@ from dataclasses import dataclass
 from nav_demo.network.findings import Finding, is_loopback
 from nav_demo.network.settings import split_uri
 
-SLOW_MS = 100.0   # of a call's median
+SLOW_MS = 100.0   # median of the calls
 CLOCKS_APART = 2  # s; an HTTP date has a resolution of 1 s
 
 
 @dataclass(frozen=True)
 class Node:
-    """A node as the master knows it. `address`: of its host, seen from here; "" where unknown."""
+    """A node as registered. `address`: its host's address, resolved here; "" if unknown."""
 
     name: str
     uri: str
     address: str
-    answer: str  # "yes", "refused" (nobody listens there), "silence"
+    answer: str  # "yes", "refused" (nothing listens there), "silence"
 
 
 def check_nodes(nodes: list[Node], master_is_here: bool) -> list[Finding]:
-    """Addresses that lead elsewhere, or nowhere; one line for all nodes of the same mistake."""
+    """Wrong or unreachable addresses; one line for all nodes with the same error."""
     wrong: dict[tuple[str, str], list[str]] = {}
     for node in nodes:
         judged = _judged(node, master_is_here)
@@ -33,7 +33,7 @@ def check_nodes(nodes: list[Node], master_is_here: bool) -> list[Finding]:
 
 
 def _judged(node: Node, master_is_here: bool) -> tuple[str, str] | None:
-    """What is wrong with a node, and what to type."""
+    """A node's error and its remedy."""
     place = split_uri(node.uri)
     if place is None:
         return f"registered {node.uri!r}, which is not an address", "rosnode cleanup"
@@ -61,7 +61,7 @@ def _names(names: list[str]) -> str:
 
 
 def check_master_answer(answer: str, host: str, port: int) -> list[Finding]:
-    """Whether there is a master where ROS_MASTER_URI says; `answer` as in Node, or "other"."""
+    """Whether there is a master at ROS_MASTER_URI; `answer` as in Node, or "other"."""
     place = f"{host}:{port}"
     alone = "" if host == "localhost" else ", or it listens to its own machine alone"
     wrong, remedy = {
@@ -77,7 +77,7 @@ def check_master_answer(answer: str, host: str, port: int) -> list[Finding]:
 
 
 def check_callback(came: bool, name: str, host: str, address: str) -> list[Finding]:
-    """Whether the master's machine could call this one by its registered name."""
+    """Whether the master's machine can call this one by its registered name."""
     if came:
         return []
     return [Finding(f"the master on {host} cannot call this machine by {name!r}: nodes there will "
@@ -86,7 +86,7 @@ def check_callback(came: bool, name: str, host: str, address: str) -> list[Findi
 
 
 def check_latency(calls_ms: list[float], host: str) -> list[Finding]:
-    """Calls to the master, ms each."""
+    """Whether calls to the master, ms each, are slow."""
     median = sorted(calls_ms)[len(calls_ms) // 2]
     if median <= SLOW_MS:
         return []
@@ -96,7 +96,7 @@ def check_latency(calls_ms: list[float], host: str) -> list[Finding]:
 
 def check_clock(use_sim_time: bool, has_clock: bool, ahead_s: float | None,
                 host: str) -> list[Finding]:
-    """`ahead_s`: the master's clock minus this one's, s; None where it did not say."""
+    """Clocks. `ahead_s`: the master's clock minus this one's, s; None if unknown."""
     if use_sim_time:
         return [] if has_clock else [Finding(
             "/use_sim_time is true and nobody publishes /clock: every node waits for time to pass",

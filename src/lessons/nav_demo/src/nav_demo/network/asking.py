@@ -19,16 +19,16 @@ CALLER = "/check_network"
 
 
 def addresses_of(name: str) -> list[str]:
-    """IPv4 addresses of a host, each once; none where it is unknown."""
+    """IPv4 addresses of a host, each once; empty if it is unknown."""
     try:
         found = socket.getaddrinfo(name, None, socket.AF_INET, socket.SOCK_STREAM)
     except (OSError, UnicodeError):
         return []
-    return list(dict.fromkeys(entry[4][0] for entry in found))  # two lines of /etc/hosts may agree
+    return list(dict.fromkeys(entry[4][0] for entry in found))  # /etc/hosts may list one twice
 
 
 def is_mine(address: str) -> bool:
-    """Only an address of this machine can be bound."""
+    """Whether the address is this machine's: only those can be bound."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.bind((address, 0))
@@ -38,7 +38,7 @@ def is_mine(address: str) -> bool:
 
 
 def address_towards(address: str) -> str:
-    """This machine's own address on the way to another one; nothing is sent."""
+    """This machine's address on the route to another one; sends nothing."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.connect((address, 9))
@@ -90,7 +90,7 @@ class Peer:
         return "yes"
 
     def clock_ahead(self) -> float | None:
-        """The other's clock minus this one's by the last answer's date, s, to 1 s."""
+        """Its clock minus this one's, s, from the last response's date; resolution 1 s."""
         if not self._transport.date:
             return None
         return parsedate_to_datetime(self._transport.date).timestamp() + 0.5 - time.time()
@@ -106,7 +106,7 @@ class Peer:
 
 
 def registered_nodes(master: Peer) -> list[Node]:
-    """All nodes that the master knows, each checked for an answer."""
+    """All nodes registered with the master, each checked for an answer."""
     state = master.call("getSystemState")
     names = sorted({name for kind in state for _, users in kind for name in users})
     uris = {name: master.call("lookupNode", name) for name in names}
@@ -134,7 +134,7 @@ def has_publisher(master: Peer, topic: str) -> bool:
 
 @contextmanager
 def _listening(came: threading.Event):
-    """A server in this process that only waits for publisherUpdate; yields its port."""
+    """A server in this process that only handles publisherUpdate; yields its port."""
     server = SimpleXMLRPCServer(("0.0.0.0", 0), logRequests=False)
     server.register_function(lambda *_: (came.set(), (1, "", 0))[1], "publisherUpdate")
     thread = threading.Thread(target=server.serve_forever, args=(0.1,), daemon=True)
@@ -147,7 +147,7 @@ def _listening(came: threading.Event):
 
 
 def master_calls_back(master: Peer, name: str) -> bool:
-    """Registers a listener under `name`, and a speaker: the master then calls the listener."""
+    """Registers a subscriber under `name`, and a publisher, so that the master calls the former."""
     came, topic = threading.Event(), f"{CALLER}/{time.monotonic_ns()}"
     with _listening(came) as port:
         uri = f"http://{name}:{port}/"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Finding:
-    """`wrong` is a sentence's worth; `remedy` what to type, and where it is not here, where."""
+    """`wrong`: the error; `remedy`: what to type, and on which machine if not on this one."""
 
     wrong: str
     remedy: str

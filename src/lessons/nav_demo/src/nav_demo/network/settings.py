@@ -1,4 +1,4 @@
-"""ROS_MASTER_URI, ROS_HOSTNAME and ROS_IP of this terminal, as they should be."""
+"""Checks this terminal's ROS_MASTER_URI, ROS_HOSTNAME and ROS_IP."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ SAMPLE = f"export ROS_MASTER_URI=http://localhost:{MASTER_PORT}"
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What the checks may ask of the machine they run on."""
+    """What the checks need to know about this machine."""
 
-    addresses_of: Callable[[str], list[str]]  # IPv4 addresses of a name; none where unknown
-    is_mine: Callable[[str], bool]            # whether an address is one of this machine's
-    address_towards: Callable[[str], str]     # this machine's address as seen from another one
-    own_name: str                             # as `hostname` has it
+    addresses_of: Callable[[str], list[str]]  # IPv4 addresses of a name; empty if unknown
+    is_mine: Callable[[str], bool]            # whether an address is this machine's
+    address_towards: Callable[[str], str]     # this machine's address on the route to another one
+    own_name: str                             # as printed by `hostname`
 
 
 def split_uri(uri: str) -> tuple[str, int] | None:
@@ -37,7 +37,7 @@ def split_uri(uri: str) -> tuple[str, int] | None:
 
 
 def check_master(environment: Mapping[str, str], around: Surroundings) -> list[Finding]:
-    """ROS_MASTER_URI by itself, before anything is asked of the master."""
+    """Check ROS_MASTER_URI, before any call to the master."""
     uri = environment.get("ROS_MASTER_URI", "")
     if not uri:
         return [Finding("ROS_MASTER_URI is not set: no node finds the master", SAMPLE)]
@@ -55,7 +55,7 @@ def check_master(environment: Mapping[str, str], around: Surroundings) -> list[F
 def advertised_name(environment: Mapping[str, str], own_name: str) -> tuple[str, str]:
     """The name by which other machines reach this terminal's nodes, and its source.
 
-    ROS_HOSTNAME wins over ROS_IP, and that over the machine's name, as in rosgraph.
+    ROS_HOSTNAME takes precedence over ROS_IP, and that over the machine's name, as in rosgraph.
     """
     for variable in ("ROS_HOSTNAME", "ROS_IP"):
         if environment.get(variable):
@@ -64,7 +64,7 @@ def advertised_name(environment: Mapping[str, str], own_name: str) -> tuple[str,
 
 
 def check_own_name(environment: Mapping[str, str], around: Surroundings) -> list[Finding]:
-    """ROS_HOSTNAME and ROS_IP; check_master must have found nothing."""
+    """Check ROS_HOSTNAME and ROS_IP, after check_master has found no error."""
     host = split_uri(environment["ROS_MASTER_URI"])[0]
     master = around.addresses_of(host)[0]
     remedy = f"export ROS_IP={around.address_towards(master)}; unset ROS_HOSTNAME"
