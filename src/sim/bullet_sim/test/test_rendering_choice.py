@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import math
+import os
+import subprocess
+import sys
+from ctypes.util import find_library
 
 import cv2
 import numpy as np
@@ -72,6 +77,34 @@ def test_insisting_on_a_broken_egl_is_an_error(monkeypatch):
     monkeypatch.setitem(choice._OPENERS, "egl", broken)
     with pytest.raises(SimulationError, match=r"egl does not start: libEGL\.so\.1 is missing"):
         open_renderer("egl")
+
+
+@pytest.mark.parametrize("library, name", [
+    (find_library("GL"), "EGL, "), ("/nowhere/libGL.so", "TinyRenderer")])
+def test_the_opengl_library_may_be_named_or_missing(library, name):
+    script = (
+        "import ctypes.util; find = ctypes.util.find_library;"
+        "ctypes.util.find_library = lambda name: None if name == 'GL' else find(name);"
+        "from bullet_sim.pose import Pose; from bullet_sim.rendering.frame import CameraView;"
+        "from bullet_sim.rendering.renderer import open_renderer;"
+        "from bullet_sim.rendering.scene import Scene;"
+        "opened = open_renderer(); view = CameraView(8, 8, 1.0, 0.05, 50.0, Pose());"
+        "opened.draw(Scene().frozen(), view, depth=True); print(opened.name)"
+    )
+    ran = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True,
+                         check=True, env=os.environ | {"GLCONTEXT_LINUX_LIBGL": library})
+    assert name in ran.stdout
+    assert ("/nowhere/libGL.so: cannot open" in ran.stderr) == (name == "TinyRenderer")
+
+
+def test_drawing_leaves_nothing_to_the_garbage_collector(no_collector):
+    opened, scene = EglRenderer(), Scene().frozen()
+    view = CameraView(8, 8, 1.0, 0.05, 50.0, Pose())
+    opened.draw(scene, view, depth=True)
+    gc.collect()
+    opened.draw(scene, view, depth=True)
+    assert gc.collect() == 0
+    opened.close()
 
 
 def test_tiny_puts_known_points_where_the_pinhole_says(tiny):

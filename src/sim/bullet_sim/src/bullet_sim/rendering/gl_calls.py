@@ -1,11 +1,20 @@
-"""OpenGL calls that take long: other Python threads run meanwhile. In moderngl's they wait."""
+"""OpenGL calls that take long: other Python threads run meanwhile. In moderngl's they wait.
+
+Importing it is an OSError where there is no OpenGL library.
+"""
 
 import ctypes
 import ctypes.util
+import os
 
 import numpy as np
 
-_GL = ctypes.CDLL(ctypes.util.find_library("GL"))  # glcontext loads the same
+# The library that glcontext loads, found in the same way.
+_GL = ctypes.CDLL(os.environ.get("GLCONTEXT_LINUX_LIBGL") or ctypes.util.find_library("GL")
+                  or "libGL.so")
+_GL.glFinish.restype = _GL.glReadPixels.restype = None
+# With these, an address can be given as an integer; `data_as` would make a cycle each time.
+_GL.glReadPixels.argtypes = [*[ctypes.c_int] * 4, ctypes.c_uint, ctypes.c_uint, ctypes.c_void_p]
 _RGBA, _UNSIGNED_BYTE = 0x1908, 0x1401
 _DEPTH_COMPONENT, _FLOAT = 0x1902, 0x1406
 
@@ -27,5 +36,4 @@ def read_depth(into: np.ndarray) -> None:
 
 def _read(into: np.ndarray, components: int, kind: int) -> None:
     height, width = into.shape[:2]
-    _GL.glReadPixels(0, 0, width, height, components, kind,
-                     into.ctypes.data_as(ctypes.c_void_p))
+    _GL.glReadPixels(0, 0, width, height, components, kind, into.ctypes.data)

@@ -103,6 +103,7 @@ class Target:
                 gl_calls.read_depth(raw)
         return self._rgba, raw
 
+
 def _framebuffer(context: moderngl.Context, size: tuple[int, int],
                  samples: int) -> moderngl.Framebuffer:
     return context.framebuffer([context.renderbuffer(size, 4, samples=samples)],
