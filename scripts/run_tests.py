@@ -30,7 +30,15 @@ import run_tests_processes as processes
 from run_tests_fast import BEGIN_WITHIN, UNTIL, fast_groups
 from run_tests_kinds import OUT, run_pytest, run_pytest_file, run_rostest, run_ruff
 from run_tests_processes import ROOT
-from run_tests_results import Result, show_failed, show_outputs, show_slowest, show_totals
+from run_tests_results import (
+    LATE,
+    Result,
+    show_failed,
+    show_outputs,
+    show_skipped,
+    show_slowest,
+    show_totals,
+)
 from run_tests_unsteady import judge_unsteady, read_known
 
 PROCESSES = re.compile(r"^pytestmark = pytest\.mark\.processes\b", re.MULTILINE)
@@ -86,7 +94,7 @@ def second_run(first: Result, limit: float) -> Result:
         second = run_file(file, limit)[0]
     else:
         second = run_pytest_file(file, limit, first.failed_cases)
-        second.passed, second.skipped = second.passed + first.passed, first.skipped
+        second.passed, second.skips = second.passed + first.passed, first.skips
         print(second.line(), flush=True)
     second.first_failures, second.first_output = first.failures, first.output
     return second
@@ -129,7 +137,7 @@ def run_fast(slow: list[Path]) -> list[Result]:
             results += run_pytest(2 * BEGIN_WITHIN, [str(path) for path in group])
             ran += len(group)
     every = files_that_say(re.compile(""), "test_*.py") + files_that_say(re.compile(""), "*.test")
-    late = sum(result.late for result in results)
+    late = sum(result.skips.count(LATE) for result in results)
     print(f"FAST=1 left out {len(every) - ran} of {len(every)} files, with them all that start "
           f"processes, and {late} tests that had not begun after {BEGIN_WITHIN:.0f} s")
     return results
@@ -161,6 +169,7 @@ def main() -> int:
     show_slowest(results)
     if not args.fast:  # which has no file that could be unsteady, and is none of the ten runs
         results.append(Result("unsteady files", failures=judge_unsteady(results, read_known())))
+    show_skipped(results)
     show_failed(results)
     return 0 if show_totals(results) else 1
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import re
 import xml.etree.ElementTree as ET
+from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,8 +23,7 @@ class Result:
     name: str
     seconds: float = 0.0
     passed: int = 0
-    skipped: int = 0
-    late: int = 0  # of these, those that `make test FAST=1` had no time for
+    skips: list[str] = field(default_factory=list)  # the reason of each skipped test
     failures: list[str] = field(default_factory=list)
     failed_cases: list[str] = field(default_factory=list)  # names of the failures that are tests
     final: bool = False  # a process was left or a time limit reached: no second run
@@ -40,8 +40,8 @@ class Result:
             said = "".join(ET.tostring(part, "unicode") for part in case)
             self.final = self.final or bool(TIMED_OUT.search(said))
         elif (skipped := case.find("skipped")) is not None:
-            self.skipped += 1
-            self.late += skipped.get("message") == LATE
+            reason = skipped.get("message") or skipped.text or "no reason given"
+            self.skips.append(" ".join(reason.split()))
         else:
             self.passed += 1
 
@@ -109,10 +109,19 @@ def show_failed(results: list[Result]) -> None:
         print("\n".join(f"  {failure}" for failure in failures))
 
 
+def show_skipped(results: list[Result]) -> None:
+    """A line for each reason why tests were skipped, with their number."""
+    reasons = Counter(reason for result in results for reason in result.skips)
+    if reasons:
+        print("\nSkipped:")
+        print("\n".join(f"{count:5d}  {reason}" for reason, count in reasons.most_common()))
+
+
 def show_totals(results: list[Result]) -> bool:
     """Print the last line; returns whether something passed and nothing failed."""
-    passed, skipped = sum(each.passed for each in results), sum(each.skipped for each in results)
-    failed = sum(len(each.failures) for each in results)
+    passed = sum(each.passed for each in results)
+    failed, skipped = (sum(len(getattr(each, kind)) for each in results)
+                       for kind in ("failures", "skips"))
     last = f"{passed} passed, {failed} failed"
     print(last + (f", {skipped} skipped" if skipped else ""), flush=True)
     return bool(passed) and not failed

@@ -155,11 +155,11 @@ def test_of_a_pytest_file_only_what_failed_runs_again(runner, monkeypatch, capsy
         return runner.Result(name, passed=1)
 
     monkeypatch.setattr(runner, "run_pytest_file", run_pytest_file)
-    first = runner.Result(name, passed=4, skipped=1)
+    first = runner.Result(name, passed=4, skips=["no GPU"])
     first.add_case(ET.fromstring("<testcase name='test_a[b c]' time='1'><failure/></testcase>"))
     (result,) = runner.run_failed_again([first], 1.0)
     assert asked == [(ROOT / name, ["test_a[b c]"])]
-    assert (result.passed, result.skipped, result.failures) == (5, 1, [])
+    assert (result.passed, result.skips, result.failures) == (5, ["no GPU"], [])
     assert result.first_failures == [f"{name}: test_a[b c]"]
 
 
@@ -183,7 +183,21 @@ def test_only_what_was_left_for_want_of_time_counts_as_that(runner, monkeypatch,
     monkeypatch.setattr(runner, "run_pytest", lambda *_: [some])
     monkeypatch.setenv(runner.UNTIL, "0")
     runner.run_fast([])
-    assert "and 1 tests that had not begun" in capsys.readouterr().out and some.skipped == 2
+    assert "and 1 tests that had not begun" in capsys.readouterr().out and len(some.skips) == 2
+
+
+def test_every_reason_to_skip_is_shown_with_its_number(runner, capsys):
+    results = [runner.Result("a.py"), runner.Result("b.py", passed=1)]
+    for result, skipped in zip([*results, results[0]], (
+            '<skipped message="no GPU"/>', '<skipped message="no &#10; GPU"/>', "<skipped/>"),
+            strict=True):
+        result.add_case(ET.fromstring(f"<testcase name='test' time='1'>{skipped}</testcase>"))
+    runner.show_skipped(results)
+    assert runner.show_totals(results)
+    assert capsys.readouterr().out == (
+        "\nSkipped:\n    2  no GPU\n    1  no reason given\n1 passed, 0 failed, 3 skipped\n")
+    runner.show_skipped([])
+    assert capsys.readouterr().out == ""
 
 
 def test_interrupted_in_the_second_run_it_says_so_and_counts_nothing(
