@@ -17,9 +17,10 @@ from marking.sandbox import Kind, available, namespace
 
 from run_session.failure import RunError
 
-LIMIT = 30.0  # s, wall
+pytestmark = pytest.mark.processes
+LIMIT = 60.0  # s, wall
 LIMITS = dataclasses.replace(
-    load_rules(Path(__file__).parents[1] / "config" / "marking.yaml").limits, memory_mb=300,
+    load_rules(Path(__file__).parents[1] / "config" / "marking.yaml").limits, memory_mb=600,
     disk_mb=16, output_mb=2)
 
 
@@ -84,6 +85,22 @@ def test_what_ends_is_said_in_one_line(boxed, student):
     fault = fault_of(boxed(program))
     assert says in fault
     assert "\n" not in fault
+
+
+FIRST_THREAD_ENDS = """import ctypes, mmap, threading, time
+def fill():
+    time.sleep(0.5)
+    shared = mmap.mmap(-1, 700_000_000)
+    for _ in range(700):
+        shared.write(bytes(1_000_000))
+    time.sleep(1000)
+threading.Thread(target=fill).start()
+ctypes.CDLL(None).pthread_exit(None)
+"""
+
+
+def test_memory_counts_when_the_first_thread_has_ended(boxed):
+    assert "it used more than 600 MB" in fault_of(boxed(FIRST_THREAD_ENDS))
 
 
 @pytest.mark.parametrize("student", ["endless_import", "deaf_to_signals"])

@@ -80,19 +80,22 @@ class Box:
 
     def _guard(self) -> None:
         """Kill it if its processes together exceed limits that the kernel sets only for each."""
-        limits = self._limits
         while self._process.poll() is None and not self._excess:
             time.sleep(GUARD_PERIOD)
-            running = self._below()
-            used_mb = sum(map(_resident_bytes, running)) / 1e6
-            if len(running) > limits.processes:
-                self._excess = f"it started more than {limits.processes:g} processes"
-            elif self._printed > limits.output_mb * 1e6:
-                self._excess = f"it printed more than {limits.output_mb:g} MB"
-            elif used_mb > limits.memory_mb:
-                self._excess = f"it used more than {limits.memory_mb:g} MB of memory"
+            self._excess = self._exceeded()
         if self._excess:
             self._kill()
+
+    def _exceeded(self) -> str:
+        """The limit that it exceeds, in one line; "" if none."""
+        limits, running = self._limits, self._below()
+        if len(running) > limits.processes:
+            return f"it started more than {limits.processes:g} processes"
+        if self._printed > limits.output_mb * 1e6:
+            return f"it printed more than {limits.output_mb:g} MB"
+        if sum(map(_resident_bytes, running)) > limits.memory_mb * 1e6:
+            return f"it used more than {limits.memory_mb:g} MB of memory"
+        return ""
 
     def _read(self) -> None:
         with self._output.open("wb") as file:
@@ -108,10 +111,16 @@ class Box:
 
 
 def _resident_bytes(pid: int) -> int:
-    try:
-        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-    except (OSError, IndexError):
-        return 0  # it has just ended
+    """A process's resident memory, as its threads have it; the first of them may have ended."""
+    with contextlib.suppress(OSError):  # it has just ended
+        return max(map(_thread_bytes, Path(f"/proc/{pid}/task").iterdir()), default=0)
+    return 0
+
+
+def _thread_bytes(files: Path) -> int:
+    with contextlib.suppress(OSError, IndexError):
+        return os.sysconf("SC_PAGE_SIZE") * int((files / "statm").read_text().split()[1])
+    return 0
 
 
 def _describe(code: int) -> str:
