@@ -78,9 +78,16 @@ def note_left(result: Result, code: int, left: list[str]) -> None:
 
 
 def rostest_cases(results: Path) -> list[tuple[bool, ET.Element]]:
-    """(is rostest's own case, case); its own only tell whether a test node ran at all."""
-    return [(path.name.startswith("rostest-"), case) for path in sorted(results.rglob("*.xml"))
-            for case in ET.parse(path).iter("testcase")]
+    """(is rostest's own case, case); its own only tell whether a test node ran at all.
+
+    The file of a node that was killed at its time limit is empty; rostest's own case says so.
+    """
+    cases = []
+    for path in sorted(results.rglob("*.xml")):
+        with contextlib.suppress(ET.ParseError):
+            cases += [(path.name.startswith("rostest-"), case)
+                      for case in ET.parse(path).iter("testcase")]
+    return cases
 
 
 def show_outputs(results: list[Result]) -> None:

@@ -126,6 +126,17 @@ def test_what_starts_no_process_hangs_or_leaves_one_is_not_run_again(runner, mon
     assert not run and not runner.show_totals(results)
 
 
+def test_a_node_that_was_killed_at_its_time_limit_is_named(runner, tmp_path):
+    (tmp_path / "rosunit-showing.xml").write_text("")
+    (tmp_path / "rostest-page.xml").write_text(
+        "<testsuite><testcase name='testshowing' classname='page' time='1'><failure>max time "
+        "[300.0s] allotted for test [showing]</failure></testcase></testsuite>")
+    ((own, case),) = sys.modules["run_tests_results"].rostest_cases(tmp_path)
+    result = runner.Result("page.test")
+    result.add_case(case)
+    assert own and result.final and "showing" in result.failures[0]
+
+
 def test_the_list_of_unsteady_files_is_complete_and_fresh(runner):
     for each in runner.read_known():
         assert set(each) - {"test"} == {"file", "reason", "date"}, each
