@@ -94,7 +94,7 @@ def second_run(first: Result, limit: float) -> Result:
         second = run_file(file, limit)[0]
     else:
         second = run_pytest_file(file, limit, first.failed_cases)
-        second.passed, second.skips = second.passed + first.passed, first.skips
+        second.passed, second.skips = second.passed + first.passed, first.skips + second.skips
         print(second.line(), flush=True)
     second.first_failures, second.first_output = first.failures, first.output
     return second

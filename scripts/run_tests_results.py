@@ -40,8 +40,8 @@ class Result:
             said = "".join(ET.tostring(part, "unicode") for part in case)
             self.final = self.final or bool(TIMED_OUT.search(said))
         elif (skipped := case.find("skipped")) is not None:
-            reason = skipped.get("message") or skipped.text or "no reason given"
-            self.skips.append(" ".join(reason.split()))
+            reason = skipped.get("message") or skipped.text or ""
+            self.skips.append(" ".join(reason.split()) or "no reason given")
         else:
             self.passed += 1
 
