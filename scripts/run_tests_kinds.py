@@ -108,14 +108,17 @@ def run_rostest(launch: Path, limit: float) -> Result:
     command = ["rostest", f"--results-base-dir={folder}", str(launch)]
     code, left = run_marked(command, log, limit, unseen)
     inner = 0
-    for own, case in rostest_cases(folder):
+    cases, unreadable = rostest_cases(folder)
+    for own, case in cases:
         inner += not own
         if not own or case.find("failure") is not None or case.find("error") is not None:
             result.add_case(case)
     if code == 124:
         result.failures.append(f"{result.name}: not done after {limit:.0f} s")
-    elif not result.failures and (code or not inner):
-        result.failures.append(f"{result.name}: exit code {code}, {inner} tests ran")
+    elif not result.failures and (code or not inner or unreadable):
+        result.failures.append(": ".join([
+            result.name, f"exit code {code}, {inner} tests ran",
+            *(f"{each} cannot be read" for each in unreadable)]))
     note_left(result, code, left)
     result.seconds = time.monotonic() - began
     if result.failures:

@@ -77,17 +77,20 @@ def note_left(result: Result, code: int, left: list[str]) -> None:
     result.final = result.final or code == 124 or bool(left)
 
 
-def rostest_cases(results: Path) -> list[tuple[bool, ET.Element]]:
-    """(is rostest's own case, case); its own only tell whether a test node ran at all.
+def rostest_cases(results: Path) -> tuple[list[tuple[bool, ET.Element]], list[str]]:
+    """(is rostest's own case, case) of each; its own only tell whether a test node ran at all.
 
-    The file of a node that was killed at its time limit is empty; rostest's own case says so.
+    And the names of files that cannot be read: that of a node that crashed or was killed is empty.
+    If it was killed at its time limit rostest's own case says so; of a crash rostest says nothing.
     """
-    cases = []
+    cases, unreadable = [], []
     for path in sorted(results.rglob("*.xml")):
-        with contextlib.suppress(ET.ParseError):
+        try:
             cases += [(path.name.startswith("rostest-"), case)
                       for case in ET.parse(path).iter("testcase")]
-    return cases
+        except ET.ParseError:
+            unreadable.append(path.name)
+    return cases, unreadable
 
 
 def show_outputs(results: list[Result]) -> None:

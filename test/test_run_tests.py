@@ -126,15 +126,42 @@ def test_what_starts_no_process_hangs_or_leaves_one_is_not_run_again(runner, mon
     assert not run and not runner.show_totals(results)
 
 
-def test_a_node_that_was_killed_at_its_time_limit_is_named(runner, tmp_path):
-    (tmp_path / "rosunit-showing.xml").write_text("")
-    (tmp_path / "rostest-page.xml").write_text(
-        "<testsuite><testcase name='testshowing' classname='page' time='1'><failure>max time "
-        "[300.0s] allotted for test [showing]</failure></testcase></testsuite>")
-    ((own, case),) = sys.modules["run_tests_results"].rostest_cases(tmp_path)
-    result = runner.Result("page.test")
-    result.add_case(case)
-    assert own and result.final and "showing" in result.failures[0]
+def rostest(runner, monkeypatch, tmp_path, code, **files):
+    """The result of a file of tests for which rostest leaves these files."""
+    def leave(command, log, *_):
+        for name, text in files.items():
+            (log.parent / f"{name.replace('_', '-')}.xml").write_text(text)
+        log.write_text("")
+        return code, []
+
+    kinds = sys.modules["run_tests_kinds"]
+    monkeypatch.setattr(kinds, "OUT", tmp_path)
+    monkeypatch.setattr(kinds, "run_marked", leave)
+    return kinds.run_rostest(ROOT / FILES[0], 1.0)
+
+
+RAN = "<testsuite><testcase name='{}' time='1'>{}</testcase></testsuite>"
+
+
+def test_a_node_that_was_killed_at_its_time_limit_is_named(runner, monkeypatch, tmp_path):
+    killed = "<failure>max time [300.0s] allotted for test [showing]</failure>"
+    result = rostest(runner, monkeypatch, tmp_path, 1, rosunit_showing="",
+                     rostest_page=RAN.format("testshowing", killed))
+    assert result.final and result.failures == [f"{FILES[0]}: testshowing"]
+
+
+def test_a_node_that_crashed_is_a_failure_although_another_passed(runner, monkeypatch, tmp_path):
+    result = rostest(runner, monkeypatch, tmp_path, 0, rosunit_crashed="",
+                     rosunit_good=RAN.format("test_it", ""),
+                     rostest_page=RAN.format("testcrashed", ""))
+    assert result.failures == [
+        f"{FILES[0]}: exit code 0, 1 tests ran: rosunit-crashed.xml cannot be read"]
+
+
+def test_every_test_node_has_the_same_time_limit():
+    limits = {(file, node.get("time-limit")) for file in FILES
+              for node in ET.parse(ROOT / file).iter("test")}
+    assert [each for each in limits if each[1] != "300"] == []
 
 
 def test_the_list_of_unsteady_files_is_complete_and_fresh(runner):
