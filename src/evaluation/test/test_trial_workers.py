@@ -11,8 +11,10 @@ import subprocess
 import sys
 import threading
 import time
+from ipaddress import ip_address
 from pathlib import Path
 
+import psutil
 import pytest
 
 HERE = Path(__file__).parent
@@ -121,6 +123,17 @@ def test_ctrl_c_keeps_what_is_done_and_ends_the_rest(tmp_path):
         INTERRUPTED, ["sleep_trial: interrupted; all processes ended"])
     assert 0 < len(names(tmp_path)) < 50
     assert not sleepers(seconds)
+
+
+def test_no_other_machine_can_connect_to_it(tmp_path):
+    seconds = 30.1875
+    trial = start(tmp_path, "--workers", 2, "--seconds", seconds)
+    until(lambda: len(sleepers(seconds)) == 2)
+    found = [ip_address(each.laddr.ip) for each in psutil.Process(trial.pid).net_connections("inet")
+             if each.status in (psutil.CONN_LISTEN, psutil.CONN_NONE)]
+    trial.send_signal(signal.SIGINT)
+    trial.communicate(timeout=LIMIT)
+    assert all(address.is_loopback for address in found), found
 
 
 def test_a_killed_program_takes_its_cases_with_it(tmp_path):

@@ -29,6 +29,7 @@ from run_session.failure import RunError
 
 RETRIES = 1  # of a case that could not be run; Dask counts worker deaths separately
 CONNECT_TIME = 10.0  # s, wall
+HERE = "127.0.0.1:0"  # of Dask's web pages, any port; without it they are open to the network
 ADDRESS = re.compile(r"\w+://[^\s/]+:\d+")
 
 
@@ -80,7 +81,7 @@ def _connected(options: argparse.Namespace) -> Iterator[Client]:
     with contextlib.ExitStack() as opened:
         cluster = options.scheduler or opened.enter_context(LocalCluster(
             n_workers=1, threads_per_worker=options.workers, processes=False,
-            dashboard_address=None))
+            dashboard_address=HERE, worker_dashboard_address=HERE))
         client = opened.enter_context(_client_of(cluster))
         try:
             yield client
