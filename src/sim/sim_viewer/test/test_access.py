@@ -86,6 +86,14 @@ def test_a_foreign_page_gets_nothing(visit, headers, status):
     visit(story)
 
 
+def test_no_other_page_may_frame_this_one(visit):
+    async def story(http, port):
+        for path in PATHS[:2]:
+            async with http.get(path) as answer:
+                assert "frame-ancestors 'none'" in answer.headers["Content-Security-Policy"]
+    visit(story)
+
+
 @pytest.mark.parametrize("path", ["/../package.xml", "/%2e%2e/package.xml", "/..%2fpackage.xml",
                                   "/vendor/../../package.xml", "//etc/passwd", "/%00",
                                   "/" + "a" * 4000])
