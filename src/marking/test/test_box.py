@@ -110,6 +110,25 @@ def test_what_never_ends_is_ended_with_all_it_started(boxed, student):
     assert box.fault() == ""
 
 
+def test_a_process_that_may_not_be_killed_protects_no_other(boxed, monkeypatch):
+    """Without a sandbox a submission may start a program of another user: sudo."""
+    box = boxed("import time\ntime.sleep(1000)\n")
+    until, kill, first = time.monotonic() + LIMIT, os.kill, box._process.pid
+    while not box._below():
+        assert time.monotonic() < until, "it does not start"
+        time.sleep(0.05)
+
+    def kill_others(pid, number):
+        if pid == first:
+            raise PermissionError
+        kill(pid, number)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "kill", kill_others)
+        box._kill()
+    assert "the program ended" in fault_of(box)
+
+
 def test_printed_secrets_of_a_terminal_do_not_reach_the_reason(boxed):
     assert "\x1b" not in fault_of(boxed("raise RuntimeError('\\x1b[2J red')"))
 

@@ -67,7 +67,7 @@ class Box:
 
     def _kill(self) -> None:
         for pid in (self._process.pid, *self._below()):
-            with contextlib.suppress(ProcessLookupError):
+            with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.kill(pid, signal.SIGKILL)
 
     def _below(self) -> list[int]:
