@@ -147,7 +147,7 @@ def main() -> int:
     """Run all; 0 if something passed and nothing failed, 130 if interrupted."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--jobs", type=int, default=3, help="files with processes at a time (3)")
-    parser.add_argument("--limit", type=float, default=900.0, help="seconds for one of these files")
+    parser.add_argument("--limit", type=float, default=1200.0, help="seconds for such a file")
     parser.add_argument("--pytest-limit", type=float, default=3000.0, help="seconds for pytest")
     parser.add_argument("--fast", action="store_true", help="what run_tests_fast.py says, in 90 s")
     args = parser.parse_args()
