@@ -81,18 +81,18 @@ def test_a_map_that_was_set_is_not_replaced_by_the_answer_that_comes_meanwhile(s
     def take(message):
         source.taken.append(message)
         at_work.set()
-        go_on.wait(5.0)
+        go_on.wait(60.0)
 
     source._take = take
     setting = threading.Thread(target=source.set, args=(GOOD,))
     asking = threading.Thread(target=source.set, args=(Map(), True))
     setting.start()
-    assert at_work.wait(5.0)
+    assert at_work.wait(60.0)
     asking.start()
     asking.join(0.1)  # s; it has to wait
     go_on.set()
     for thread in (setting, asking):
-        thread.join(5.0)
+        thread.join(60.0)
     assert source.taken == [GOOD]
 
 

@@ -17,7 +17,7 @@ from nav_msgs.msg import OccupancyGrid
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import LaserScan, PointCloud2, PointField
 
-PATIENCE = 15.0  # s
+PATIENCE = 60.0  # s
 RESOLUTION = 0.1
 
 
@@ -121,11 +121,12 @@ class CostmapStory(unittest.TestCase):
         self.assertLess(self.at("global", 3.05, 2.05), 99)
         self.assertEqual(self.at("global", 3.55, 2.05), 100)
 
-        Client("/global/costmap/soft", timeout=5).update_configuration({"inflation_radius": 0.0})
+        soft = Client("/global/costmap/soft", timeout=PATIENCE)
+        soft.update_configuration({"inflation_radius": 0.0})
         self.wait(lambda: self.at("global", 4.65, 1.05) == 0, "the inflation stays")
-        Client("/global/costmap/lasers", timeout=5).update_configuration({"enabled": False})
+        Client("/global/costmap/lasers", timeout=PATIENCE).update_configuration({"enabled": False})
         self.wait(lambda: self.at("global", 3.55, 2.05) == 0, "the obstacle stays")
-        Client("/local/costmap", timeout=5).update_configuration({"footprint_padding": 0.1})
+        Client("/local/costmap", timeout=PATIENCE).update_configuration({"footprint_padding": 0.1})
         self.wait(lambda: abs(self.outlines["local"][0].x - 1.3) < 1e-4, "padding")
 
         self.silent = True

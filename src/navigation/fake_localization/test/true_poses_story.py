@@ -14,7 +14,7 @@ from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped, TransformSta
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 
-LIMIT = 20.0  # s
+LIMIT = 60.0  # s
 TRUTH = (5.0, 2.0)     # of the base in the world, heading along x
 ODOMETRY = (0.5, -0.5)  # of the base in odom
 ON_MAP = (1.0, -5.0, -math.pi / 2)  # turned by -90 degrees, then 1 m back along the map's x
@@ -90,10 +90,12 @@ class FakeLocalization(unittest.TestCase):
         self.assertAlmostEqual(yaw_of(found.rotation), ON_MAP[2], places=6)
 
     def test_2_transforms_are_dated_ahead(self):
-        estimate = self.pose()
-        at = estimate.header.stamp + rospy.Duration(0.25)
-        self.wait_for(lambda: self.buffer.can_transform("map", "odom", at), "the transform then")
-        self.assertLess((rospy.Time.now() - at).to_sec(), 2.0)
+        def ahead():
+            """s, of the newest transform onto the map before the newest odometry."""
+            return (self.buffer.get_latest_common_time("map", "odom")
+                    - self.buffer.get_latest_common_time("odom", "base_footprint")).to_sec()
+
+        self.wait_for(lambda: ahead() > 0.2, "a transform of transform_tolerance later")
 
     def test_3_an_initial_pose_moves_the_robot_on_the_map(self):
         self.wait_for(lambda: self.wanted.get_num_connections(), "a subscriber")

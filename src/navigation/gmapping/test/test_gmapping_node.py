@@ -69,7 +69,7 @@ def test_scans_of_two_lasers_are_mapped_one_at_a_time(node):
     for laser in lasers:
         laser.start()
     for laser in lasers:
-        laser.join(5.0)
+        laser.join(60.0)
     assert met == [False, False]
 
 
@@ -92,16 +92,16 @@ def test_a_laser_that_waits_for_its_odometry_does_not_hold_up_another(node):
         if threading.current_thread() is not late:
             return np.zeros(3)
         waits.set()
-        is_over.wait(5.0)
+        is_over.wait(60.0)
         return None
 
     node._transforms.pose = pose
     late.start()
-    assert waits.wait(5.0)
+    assert waits.wait(60.0)
     node._take_scan(LaserScan())
     assert node.events == ["map at 0 s"] and late.is_alive()
     is_over.set()
-    late.join(5.0)
+    late.join(60.0)
 
 
 def test_a_scan_that_no_map_can_be_made_of_is_left_out_with_a_line(node, monkeypatch):

@@ -28,7 +28,7 @@ class KillsSimulator(unittest.TestCase):
         rospy.Subscriber("rosout", Log, self.note)
         rospy.Subscriber("move_base/status", GoalStatusArray, self.count)
         self.client = actionlib.ActionClient("move_base", MoveBaseAction)
-        wait_until(lambda: self.client.wait_for_server(rospy.Duration(0.1)), "move_base", 40.0)
+        wait_until(lambda: self.client.wait_for_server(rospy.Duration(0.1)), "move_base")
 
     def note(self, message):
         if message.name == "/move_base" and message.level >= Log.WARN:
@@ -40,22 +40,23 @@ class KillsSimulator(unittest.TestCase):
     def test_one_line_then_on_to_the_same_goal(self):
         wait_until(lambda: self.place() is not None, "the robot")
         goal = self.client.send_goal(goal_at(THERE))
-        wait_until(lambda: self.place() and self.place().x > HERE[0] + 0.15, "driving", 30.0)
+        wait_until(lambda: self.place() and self.place().x > HERE[0] + 0.15, "driving")
         killed, before = time.monotonic(), address("gazebo")
         self.lines.clear()
         os.kill(pid_of("gazebo"), signal.SIGKILL)
-        wait_until(lambda: time.monotonic() > killed + SILENT, "a line")
-        said = [line for when, line in self.lines if when < killed + SILENT]
+        wait_until(lambda: self.lines and time.monotonic() > killed + SILENT, "a line")
+        until = max(killed + SILENT, self.lines[0][0])  # a busy machine may say it later
+        said = [line for when, line in self.lines if when <= until]
         self.assertEqual(len(said), 1, said)
         self.assertIn("no simulated clock /clock", said[0])
-        wait_until(lambda: address("gazebo") not in (None, before), "a new simulator", 40.0)
+        wait_until(lambda: address("gazebo") not in (None, before), "a new simulator")
         self.spawn()
         wait_until(lambda: goal.get_goal_status() not in (GoalStatus.PENDING, GoalStatus.ACTIVE),
-                   "the goal's end", 60.0)
+                   "the goal's end", 100.0)
         self.assertEqual(goal.get_goal_status(), GoalStatus.SUCCEEDED, goal.get_goal_status_text())
         self.assertLess(abs(self.place().x - THERE[0]), 0.15)
         told = self.statuses
-        wait_until(lambda: self.statuses > told + 3, "the action's status, again and again", 10.0)
+        wait_until(lambda: self.statuses > told + 3, "the action's status, again and again")
         anew = [line for _, line in self.lines if re.search("clock was set back", line)]
         self.assertEqual(len(anew), 1, self.lines)
 
@@ -70,7 +71,7 @@ class KillsSimulator(unittest.TestCase):
     def spawn(self):
         pose = Pose()
         pose.position.x, pose.position.y, pose.orientation.w = *HERE, 1.0
-        rospy.wait_for_service("gazebo/spawn_urdf_model", 20.0)
+        rospy.wait_for_service("gazebo/spawn_urdf_model", 60.0)
         rospy.ServiceProxy("gazebo/spawn_urdf_model", SpawnModel)(
             ROBOT, rospy.get_param("robot_description"), "/", pose, "world")
 

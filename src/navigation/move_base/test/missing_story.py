@@ -44,7 +44,7 @@ class Missing(unittest.TestCase):
         """The next line of each node: all of these things and no other."""
         for name, things in wanted.items():
             node = f"/{name}"
-            wait_until(lambda node=node: self.said(node), f"a line of {node}", 30.0)
+            wait_until(lambda node=node: self.said(node), f"a line of {node}")
             line = self.said(node)[0]
             self.assertEqual(len(re.findall(r"\bno (?!body)", line)), len(things), line)
             for thing in things:
@@ -80,13 +80,15 @@ class Missing(unittest.TestCase):
         message = grid_message(room(), "map", rospy.Time.now())
         maps.publish(message)
         message = OccupancyGrid(message.header, message.info, message.data.tolist())
-        rospy.Service("static_map", GetMap, lambda _: GetMapResponse(message))
-        time.sleep(0.7)  # amcl asks every 0.5 s
+        asked = threading.Event()
+        rospy.Service("static_map", GetMap, lambda _: asked.set() or GetMapResponse(message))
+        wait_until(asked.is_set, "amcl's question")
+        time.sleep(0.2)
         self.begin()
         self.expect(amcl=[ODOMETRY, LASER], slam_gmapping=[ODOMETRY, LASER], move_base=[ODOMETRY])
 
         robot.speaks = {"scan", "odom", "tf"}
-        rospy.wait_for_message("amcl_pose", rospy.AnyMsg, 20)
+        rospy.wait_for_message("amcl_pose", rospy.AnyMsg, 60)
         time.sleep(0.5)
         self.begin()
         robot.speaks = {"scan", "odom"}

@@ -15,7 +15,7 @@ from move_base_msgs.msg import MoveBaseGoal
 from nav_nodes.messages import stamped_pose
 
 
-def wait_until(condition: Callable[[], Any], what: str, limit: float = 20.0) -> Any:
+def wait_until(condition: Callable[[], Any], what: str, limit: float = 60.0) -> Any:
     """The condition's first true value."""
     end = time.monotonic() + limit
     while time.monotonic() < end:

@@ -48,7 +48,7 @@ class Story(unittest.TestCase):
         rospy.Subscriber("odom", Odometry, lambda odom: moving.append(
             abs(odom.twist.twist.linear.x) + abs(odom.twist.twist.angular.z)), queue_size=1)
         client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-        self.assertTrue(client.wait_for_server(rospy.Duration(30)))
+        self.assertTrue(client.wait_for_server(rospy.Duration(60)))
         state = rospy.ServiceProxy("gazebo/get_model_state", GetModelState)
 
         client.send_goal(MoveBaseGoal(stamped_pose(np.array(BEHIND), "map", rospy.Time.now())))
