@@ -7,7 +7,7 @@ import time
 import rospy
 from std_msgs.msg import Float64
 
-LIMIT = 20.0  # s, for everything that is waited for
+LIMIT = 60.0  # s, for everything that is waited for
 WHEELS = tuple(
     f"{wheel}_wheel_velocity_controller"
     for wheel in ("left_rear", "right_rear", "left_front", "right_front")

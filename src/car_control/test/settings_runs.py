@@ -16,7 +16,7 @@ import yaml
 
 NODE = "/lane_follow"
 DYNPARAM = ("rosrun", "dynamic_reconfigure", "dynparam")
-LIMIT = 30  # s, wall
+LIMIT = 60  # s, wall
 
 
 def dynparam(word, *arguments):

@@ -5,7 +5,6 @@ import math
 import os
 import signal
 import sys
-import time
 import unittest
 import xmlrpc.client
 
@@ -52,13 +51,13 @@ class Story(unittest.TestCase):
         message = JointState(name=names, position=[*self.angles, *hinges][:len(names)])
         message.header.stamp = rospy.Time(self.time)
         self.states.publish(message)
-        time.sleep(0.002)  # the queue of the node holds ten
 
     def drive(self, way, hinges, turn=0.0):
         """In STEPS of PERIOD; m forwards and rad to the left."""
         for _ in range(STEPS):
             self.tell([(way + side * turn * TRACK / 2) / STEPS for side in (-1, 1)], hinges)
-        wait_until(lambda: self.odometry[-1].header.stamp.to_sec() > self.time - 1e-6, "odometry")
+            wait_until(lambda: self.odometry  # the queue of the node holds ten
+                       and self.odometry[-1].header.stamp.to_sec() > self.time - 1e-6, "odometry")
 
     def assert_at(self, x, y, yaw):
         pose = self.odometry[-1].pose.pose

@@ -32,7 +32,7 @@ class Lesson07(unittest.TestCase):
         camera.sends = False
         begin = time.monotonic()
         camera.next_command(stands, "standing still without images")
-        self.assertLess(time.monotonic() - begin, 5.0)
+        self.assertLess(time.monotonic() - begin, 15.0)
 
         camera.sends = True
         camera.next_command(lambda c: c.linear.x > 0, "driving when images are back")

@@ -11,7 +11,7 @@ import unittest
 import rospy
 import rostest
 from rosgraph_msgs.msg import Log
-from stand_in_camera import WIDTH, StandInCamera, stands, wait_until
+from stand_in_camera import LIMIT, WIDTH, StandInCamera, stands, wait_until
 
 TIMES = 4
 PERIOD = 1 / 30  # s from image to image
@@ -43,7 +43,7 @@ class LessonsEnd(unittest.TestCase):
                 self.camera.next_command(lambda c: c.linear.x > 0, f"{script} driving")
                 time.sleep(attempt / TIMES * PERIOD)  # at another moment between two images
                 process.send_signal(signal.SIGINT)
-                warnings = process.communicate(timeout=10)[1]
+                warnings = process.communicate(timeout=LIMIT)[1]
             wait_until(lambda: connections() == 0, "the last command's arrival")
             self.assertTrue(stands(self.camera.commands[-1]), f"{script}, attempt {attempt + 1}")
             self.assertNotIn("no images on camera", warnings)

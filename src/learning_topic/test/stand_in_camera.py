@@ -9,7 +9,7 @@ from geometry_msgs.msg import Twist
 from sensor_msgs.msg import Image
 
 WIDTH, HEIGHT = 640, 360  # px
-LIMIT = 20.0  # s, for everything that is waited for
+LIMIT = 60.0  # s, for everything that is waited for
 
 
 def wait_until(condition, what, limit=LIMIT):
