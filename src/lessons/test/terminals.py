@@ -18,7 +18,7 @@ import threading
 import time
 from pathlib import Path
 
-LIMIT = 40.0  # s, for whatever is waited for
+LIMIT = 60.0  # s, for whatever is waited for
 POLL = 0.05  # s
 IMPATIENCE = 4.0  # s until Ctrl-C is typed again
 # A terminal's shell stays when a command has ended, and with it what the command has left behind:

@@ -23,5 +23,5 @@ def test_an_answer_that_is_none_is_no_link(answer, links):
         thread.start()
         uri = f"http://localhost:{server.server_address[1]}"
         found = _links_of(SimpleNamespace(lookupNode=lambda _node: uri), "/judge", "/me")
-        thread.join(10.0)
+        thread.join(60.0)
     assert found == links

@@ -18,7 +18,7 @@ from sensor_msgs.msg import Image
 from vision_msgs.msg import Detection2DArray, VisionInfo
 
 NODE, TOPIC = "/object_detector", "/any/image_topic"
-LIMIT = 25.0  # wall s
+LIMIT = 60.0  # wall s
 HELD_RATE = 5.0  # pictures a second that the node may look at
 
 
@@ -146,7 +146,7 @@ class Detector(unittest.TestCase):
             self.wait(subscriber.get_num_connections, "the node's answers")
             self.repeat(picture(401), lambda: heard, "an answer at a low rate")
             node.send_signal(signal.SIGINT)
-            self.assertEqual(node.wait(timeout=10), 0)
+            self.assertEqual(node.wait(timeout=LIMIT), 0)
         finally:
             subscriber.unregister()
             node.kill()

@@ -18,7 +18,7 @@ def start():
 
 
 def wait_for(words, **settings):
-    end = time.monotonic() + 20
+    end = time.monotonic() + 60
     while time.monotonic() < end:
         shown = check(**settings)
         if words in shown[1]:

@@ -9,7 +9,7 @@ import rostest
 import tf2_ros
 from geometry_msgs.msg import Twist
 
-LIMIT = rospy.Duration(15.0)
+LIMIT = rospy.Duration(60.0)
 
 
 class Car(unittest.TestCase):

@@ -15,7 +15,7 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Image, LaserScan, PointCloud2
 
-LIMIT = 30.0  # s of wall time, for whatever is waited for
+LIMIT = 60.0  # s of wall time, for whatever is waited for
 LASER_TO_WALL = 2.0  # m, all round from the middle of the room
 
 
