@@ -56,8 +56,8 @@ class Story(unittest.TestCase):
         """In STEPS of PERIOD; m forwards and rad to the left."""
         for _ in range(STEPS):
             self.tell([(way + side * turn * TRACK / 2) / STEPS for side in (-1, 1)], hinges)
-            wait_until(lambda: self.odometry  # the queue of the node holds ten
-                       and self.odometry[-1].header.stamp.to_sec() > self.time - 1e-6, "odometry")
+            wait_until(lambda: self.odometry[-1].header.stamp.to_sec() > self.time - 1e-6,
+                       "odometry")  # step by step: the queue of the node holds ten
 
     def assert_at(self, x, y, yaw):
         pose = self.odometry[-1].pose.pose
@@ -67,7 +67,7 @@ class Story(unittest.TestCase):
                                places=3)
 
     def test_1_straight_on(self):
-        self.tell([0, 0], [0, 0])
+        wait_until(lambda: self.tell([0, 0], [0, 0]) or self.odometry, "the link to odom")
         self.drive(0.5, [0, 0])
         self.assert_at(0.5, 0, 0)
         last = self.odometry[-1]
