@@ -5,9 +5,11 @@ import subprocess
 import time
 
 import psutil
+import pytest
 
 from run_session.processes import Family, end_with_parent
 
+pytestmark = pytest.mark.processes
 # Ends at Ctrl-C; what it has started, in a session of its own, does not.
 PARENT = ("import subprocess, sys, time; child = subprocess.Popen(['sh', '-c', 'trap \"\" INT; "
           "sleep 1000'], start_new_session=True); print(child.pid, flush=True); time.sleep(1000)")
