@@ -14,8 +14,8 @@ import pytest
 pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parent.parent / "scripts" / "course_run.py"
 LAP_LIMIT = 420.0  # s, wall, for a lap of 70 simulated seconds on a slow machine
-START_LIMIT = 90.0  # s, wall
-END_LIMIT = 15.0  # s, wall, to notice a death and clean up
+START_LIMIT = 150.0  # s, wall
+END_LIMIT = 60.0  # s, wall, to notice a death and clean up
 
 
 def processes_of(out: Path) -> dict[int, str]:

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parent.parent / "scripts" / "navigate.py"
 LIMIT = 240.0  # s, wall, for all of it on a slow machine
 START_LIMIT = 120.0  # s, wall
-END_LIMIT = 15.0  # s, wall, to end all and write what there is
+END_LIMIT = 60.0  # s, wall, to end all and write what there is
 WALL = """<model name="{name}"><static>true</static><pose>{x} {y} 0.5 0 0 0</pose><link name="l">
 <collision name="c"><geometry><box><size>{dx} {dy} 1</size></box></geometry></collision></link>
 </model>"""

@@ -164,7 +164,7 @@ def test_a_mistake_is_one_line(tmp_path, capfd, monkeypatch, words, said):
 
 def test_dask_adds_nothing_to_the_line_when_the_program_ends(tmp_path):
     trial = start(tmp_path, "--scheduler", "nonsense://a:1")
-    (line,) = trial.communicate(timeout=15.0)[1].strip().splitlines()
+    (line,) = trial.communicate(timeout=LIMIT)[1].strip().splitlines()
     assert "no Dask scheduler at nonsense://a:1" in line and trial.returncode == NOT_RUN
 
 

@@ -22,7 +22,8 @@ from std_srvs.srv import Empty, EmptyResponse
 
 SPEED = 0.15  # m/s, simulated
 FRAME_RATE_HZ = 30
-ANSWER_TIME = 1.0  # s, wall, that a frame in lockstep waits for its command
+# s, wall, that a frame in lockstep waits for its command: some never come, others must
+MUTE_TIME, ANSWER_TIME = 1.0, 30.0
 
 
 class FakeSimulator:
@@ -84,6 +85,7 @@ class FakeSimulator:
         images = rospy.Publisher("/camera/rgb/image_raw", Image, queue_size=1)
         odometry = rospy.Publisher("/odom", Odometry, queue_size=1000)  # not one is lost
         image, lockstep = self._picture(), bool(self._asked["lockstep"])
+        answer_time = MUTE_TIME if self._behaviour == "mute" else ANSWER_TIME
         self._running.wait()
         while not rospy.is_shutdown():
             if not lockstep:
@@ -99,7 +101,7 @@ class FakeSimulator:
             self._answered.clear()
             info.publish(CameraInfo(header=image.header))
             images.publish(image)
-            if lockstep and not self._answered.wait(ANSWER_TIME):
+            if lockstep and not self._answered.wait(answer_time):
                 rospy.logwarn_throttle(10.0, f"lockstep: no message on {self._asked['lockstep']}")
 
     def _picture(self) -> Image:
