@@ -158,7 +158,7 @@ class BaseControllers(unittest.TestCase):
             self.assertAlmostEqual(actual, 10.0, delta=0.1)
 
     def test_parameters_change_at_run_time(self):
-        client = Client("/diff_base/drive", timeout=10)
+        client = Client("/diff_base/drive", timeout=60)
         base = self.diff
         client.update_configuration({"publish_rate": 10.0, "left_wheel_radius_multiplier": 0.5,
                                      "right_wheel_radius_multiplier": 0.5})

@@ -11,7 +11,7 @@ from controller_manager_msgs.srv import (
 from rosgraph_msgs.msg import Log
 from std_srvs.srv import Empty
 
-LIMIT = 20.0  # s, wall
+LIMIT = 60.0  # s, wall
 STRICT, BEST_EFFORT = SwitchControllerRequest.STRICT, SwitchControllerRequest.BEST_EFFORT
 
 

@@ -12,7 +12,7 @@ from controller_manager_msgs.srv import (
 )
 from gazebo_msgs.srv import GetModelState
 
-LIMIT = 30.0  # s, wall
+LIMIT = 60.0  # s, wall
 
 
 def wait_until(condition, what):

@@ -8,7 +8,7 @@ import time
 
 import rospy
 
-LIMIT = 30.0  # s, wall, for anything that a test waits for
+LIMIT = 60.0  # s, wall, for anything that a test waits for
 NODE = "/gazebo"
 WORLD = os.path.join(os.path.dirname(os.path.abspath(__file__)), "camera_robot.world")
 

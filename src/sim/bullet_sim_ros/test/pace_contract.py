@@ -29,7 +29,7 @@ from std_srvs.srv import Empty
 
 IMAGES = "/eye/image_raw"
 WINDOW = 1.0  # s, wall, over which the pace is taken
-TRIES = 5  # windows; other programs may take the processor in one of them
+TRIES = 20  # windows; other programs may take the processor in one of them
 GUESTS, VISITS = 20, 10
 HANGING = f"""
 import rospy
@@ -174,8 +174,15 @@ class Pace(unittest.TestCase):
         # Half a second more than the window over which rates are taken, after all have connected.
         wait_until(lambda: told and {s.name: s for s in told[-1].sensors}["lidar"].sim_update_rate,
                    "rates")
-        wait_until(lambda first=len(told): len(told) > first + 6, "a window of rates")
-        msg = told[-1]
+        for left in reversed(range(TRIES)):
+            wait_until(lambda first=len(told): len(told) > first + 6, "a window of rates")
+            try:
+                return self.check_metrics(told[-1])
+            except AssertionError:
+                if not left:
+                    raise
+
+    def check_metrics(self, msg):
         sensors = {sensor.name: sensor for sensor in msg.sensors}
         self.assertEqual(set(sensors), {"eye", "lidar"})
         for name, rate_hz in (("eye", 20.0), ("lidar", 10.0)):

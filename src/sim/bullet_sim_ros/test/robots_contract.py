@@ -11,7 +11,7 @@ from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import LaserScan
 
-LIMIT = 20.0  # s, wall
+LIMIT = 60.0  # s, wall
 
 
 def service(name, kind):

@@ -148,7 +148,7 @@ class RosControl(unittest.TestCase):
         self.assertFalse(self.manager.switch(start=["left_effort"], timeout=0.3))
         self.assertEqual(self.manager.states(), {"left_effort": "initialized"})
         call("/gazebo/unpause_physics", Empty)
-        self.assertTrue(self.manager.switch(start=["left_effort"], timeout=5.0))
+        self.assertTrue(self.manager.switch(start=["left_effort"], timeout=LIMIT))
 
     # --- controllers
 
@@ -194,8 +194,13 @@ class RosControl(unittest.TestCase):
     def test_a_command_times_out_where_the_parameter_says_so(self):
         # conforms: controllers/velocity_controllers/JointVelocityController
         self.start("right_velocity")
+        speeds = []  # all of them: it turns for a moment only
+        states = rospy.Subscriber("/bench/joint_states", JointState, lambda msg: speeds.append(
+            msg.velocity[msg.name.index("right_wheel")]))
+        self.addCleanup(states.unregister)
+        wait_until(lambda: speeds, "joint states")
         self.send("right_velocity", 9.0)
-        self.velocity_reaches("right_wheel", 9.0)
+        wait_until(lambda: any(abs(speed - 9.0) < 0.05 for speed in speeds), "9 rad/s")
         self.velocity_reaches("right_wheel", 0.0)
 
     def test_a_group_takes_a_number_for_each_joint(self):

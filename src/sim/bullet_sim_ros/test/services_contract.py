@@ -33,7 +33,7 @@ ARM = """<robot name="arm"><link name="base">{i}</link><link name="tip">{i}</lin
 <limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>""".format(
     i='<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
       "</inertial>")
-LIMIT = 10.0  # s, wall
+LIMIT = 60.0  # s, wall
 
 
 def service(name, kind):

@@ -8,7 +8,7 @@ from bullet_sim.profiler import Profiler
 from bullet_sim_ros import drawing
 from bullet_sim_ros.drawing import DrawingThread
 
-LIMIT = 10.0  # s
+LIMIT = 60.0  # s
 
 
 @pytest.fixture

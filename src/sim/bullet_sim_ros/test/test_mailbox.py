@@ -21,7 +21,7 @@ def in_thread(function):
     thread.start()
 
     def result():
-        thread.join(timeout=5)
+        thread.join(timeout=60)
         assert not thread.is_alive()
         return box[0]
     return result
@@ -30,14 +30,14 @@ def in_thread(function):
 def test_a_call_runs_in_the_loop_and_brings_its_result():
     mailbox = Mailbox()
     result = in_thread(lambda: mailbox.call(threading.get_ident))
-    mailbox.run_pending(wait=5.0)
+    mailbox.run_pending(wait=60.0)
     assert result() == threading.get_ident()
 
 
 def test_an_exception_reaches_the_caller():
     mailbox = Mailbox()
     result = in_thread(lambda: mailbox.call(lambda: 1 / 0))
-    mailbox.run_pending(wait=5.0)
+    mailbox.run_pending(wait=60.0)
     assert isinstance(result(), ZeroDivisionError)
 
 
@@ -76,5 +76,5 @@ def test_a_time_out_inside_the_call_is_the_callers(error):
     def late():
         raise error("late")
     result = in_thread(lambda: mailbox.call(late))
-    mailbox.run_pending(wait=5.0)
+    mailbox.run_pending(wait=60.0)
     assert isinstance(result(), error)

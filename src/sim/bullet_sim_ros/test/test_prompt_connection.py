@@ -12,7 +12,7 @@ from rospy.impl.tcpros_base import TCPROSTransport, TCPROSTransportProtocol
 
 from bullet_sim_ros.prompt_connection import PromptConnection
 
-LIMIT = 10.0  # s
+LIMIT = 60.0  # s
 
 
 class Pair:

@@ -9,7 +9,7 @@ from rospy.impl.registration import RegManager
 
 from bullet_sim_ros.publisher_lists import keep_every_publisher
 
-LIMIT = 10.0  # s
+LIMIT = 60.0  # s
 
 
 class Node:

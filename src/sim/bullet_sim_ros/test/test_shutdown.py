@@ -13,6 +13,7 @@ from rospy import core
 
 from bullet_sim_ros import shutdown
 
+LIMIT = 60.0  # s
 SLOW_MODULE = """
 import time
 print("loads", flush=True)
@@ -31,22 +32,25 @@ def own_rospy(monkeypatch):
         monkeypatch.setattr(core, flag, False)
 
 
-def test_no_topic_is_closed_while_the_loop_still_publishes():
+def test_no_topic_is_closed_while_the_loop_still_publishes(monkeypatch):
     """Chaos: race, seed 203, ends it by rosnode kill; rospy closes topics in its preshutdown."""
+    monkeypatch.setattr(shutdown, "LOOP_END", LIMIT)
+    monkeypatch.setattr(shutdown, "SHUTDOWN_LIMIT", LIMIT)
     closed, asked = threading.Event(), threading.Event()
     core._preshutdown_hooks += [lambda _: time.sleep(0.2), lambda _: closed.set()]
     ended = shutdown.end_before_topics(asked.set)
     master = threading.Thread(target=rospy.signal_shutdown, args=("user request",))
     master.start()
-    assert asked.wait(10.0) and not closed.wait(0.5)
+    assert asked.wait(LIMIT) and not closed.wait(0.5)
     ended.set()
     shutdown.shut_down()  # the main thread's
     assert closed.is_set() and rospy.is_shutdown()
-    master.join(10.0)
+    master.join(LIMIT)
 
 
 def test_a_loop_that_begins_after_the_shutdown_is_not_waited_for(monkeypatch):
     monkeypatch.setattr(core, "_shutdown_flag", True)
+    monkeypatch.setattr(shutdown, "LOOP_END", LIMIT)
     began = time.monotonic()
     shutdown.end_before_topics(lambda: None)
     assert time.monotonic() - began < shutdown.LOOP_END / 2
@@ -60,7 +64,7 @@ def test_a_signal_ends_what_waits_for_a_master_that_is_gone(monkeypatch):
     try:
         shutdown.end_by_signals(asked.set)
         os.kill(os.getpid(), signal.SIGTERM)
-        until = time.monotonic() + 10.0
+        until = time.monotonic() + LIMIT
         while not rospy.is_shutdown() and time.monotonic() < until:
             time.sleep(0.01)
     finally:
@@ -82,13 +86,13 @@ def test_a_service_that_registers_with_a_master_that_is_gone_ends(monkeypatch):
 
     registering = threading.Thread(target=register)
     registering.start()
-    assert registers.wait(10.0)
+    assert registers.wait(LIMIT)
     core._preshutdown_hooks.append(lambda _: services.acquire())
     ends = threading.Thread(target=shutdown.shut_down)
     ends.start()
     try:
-        ends.join(5.0)
-        registering.join(5.0)
+        ends.join(LIMIT)
+        registering.join(LIMIT)
         assert not (ends.is_alive() or registering.is_alive())
     finally:
         over.set()
@@ -104,7 +108,7 @@ def test_ctrl_c_while_modules_load_is_no_traceback(tmp_path):
     try:
         assert node.stdout.readline() == "loads\n"
         node.send_signal(signal.SIGINT)
-        said, _ = node.communicate(timeout=30)
+        said, _ = node.communicate(timeout=LIMIT)
     finally:
         node.kill()
     assert (said, node.returncode) == ("", -signal.SIGINT)

@@ -14,7 +14,7 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo, Image, Imu, JointState, LaserScan, PointCloud2
 from std_srvs.srv import Empty
 
-LIMIT = 30.0  # s, wall
+LIMIT = 60.0  # s, wall
 FOCAL_PX = 1920 / (2 * math.tan(1.3439 / 2))
 
 

@@ -30,7 +30,7 @@ GROUND = """<sdf version="1.6"><world name="default">
     <real_time_update_rate>0</real_time_update_rate></physics>
   <include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>
 </world></sdf>"""
-LIMIT = 20.0  # s, wall, for one service call
+LIMIT = 60.0  # s, wall, for one service call
 
 
 class Bench:

@@ -11,7 +11,7 @@ from geometry_msgs.msg import Twist, Vector3
 from bullet_sim.pose import Pose
 from bullet_sim_ros.check.stand_ins import Graph
 
-LIMIT = 20.0  # s, wall, for controllers to start
+LIMIT = 60.0  # s, wall, for controllers to start
 COVARIANCE = [0.001, 0.001, 1e6, 1e6, 1e6, 0.03]
 TRANSMISSION = """<transmission name="{0}"><type>transmission_interface/SimpleTransmission</type>
   <joint name="{0}"><hardwareInterface>hardware_interface/{1}JointInterface</hardwareInterface>

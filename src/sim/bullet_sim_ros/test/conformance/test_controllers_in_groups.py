@@ -9,7 +9,7 @@ from std_msgs.msg import Float64, Float64MultiArray
 
 from bullet_sim_ros.check.stand_ins import Graph
 
-LIMIT = 20.0  # s, wall, for a controller to start
+LIMIT = 60.0  # s, wall, for a controller to start
 INERTIAL = """<inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0"
     izz="0.1"/></inertial>"""
 JOINT = """<link name="{0}"/><joint name="{0}" type="revolute"><parent link="base"/>

@@ -22,7 +22,7 @@ from bullet_sim.pose import Pose as Placement
 from bullet_sim.pose import quaternion_from_rpy, rotation_matrix
 
 FOLDER = Path(__file__).resolve().parents[2] / "styles"
-LIMIT = 20.0  # s, wall, for controllers to start
+LIMIT = 60.0  # s, wall, for controllers to start
 STRICT = 2  # of controller_manager_msgs/SwitchController
 
 
