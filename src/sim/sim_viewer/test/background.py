@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable, Coroutine
 
-LIMIT = 20.0  # s that anything may take
+LIMIT = 60.0  # s that anything may take
 
 loop = asyncio.new_event_loop()
 threading.Thread(target=loop.run_forever, daemon=True).start()

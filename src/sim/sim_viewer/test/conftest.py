@@ -16,7 +16,7 @@ from sim_viewer.server import Server
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-LIMIT = 40.0  # s that a story may take
+LIMIT = 120.0  # s that a story may take
 
 
 def free_port() -> int:

@@ -23,7 +23,7 @@ from tool_link import ToolLink
 PERIOD = 0.1  # s between messages
 ANSWERS = 30  # of another page meanwhile, over a second at least
 LONGEST_TEXT = 45_000  # letters
-SOON = 2.0  # s in which another page is answered meanwhile
+SOON = 15.0  # s in which another page is answered meanwhile, also on a busy machine
 
 
 class Talker:

@@ -53,7 +53,7 @@ class Restarted(unittest.TestCase):
     def end_server(self):
         if self.server is not None:
             self.server.terminate()
-            self.server.wait(10.0)
+            self.server.wait(60.0)
 
     def test_control_counts_without_loading_the_page_by_hand(self):
         page = self.browser.open(self.start_server(control="false") + "#drive")

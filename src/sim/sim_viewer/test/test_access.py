@@ -159,7 +159,7 @@ def test_without_control_every_operation_that_changes_something_is_refused(visit
 
 async def ask(link, op, **args):
     await link.send_json({"id": 7, "op": op, **args})
-    return await link.receive_json(timeout=10)
+    return await link.receive_json(timeout=60)
 
 
 def test_without_a_master_every_question_says_so(visit):

@@ -2,9 +2,9 @@
 
 import itertools
 import math
+import os
 import random
 import subprocess
-import time
 
 import pytest
 from sim_viewer.tools import graph_layout
@@ -90,10 +90,10 @@ def test_a_graph_that_takes_too_long_is_refused(monkeypatch):
     pick = random.Random(1)
     nodes = [str(i) for i in range(300)]
     edges = [(pick.choice(nodes), pick.choice(nodes)) for _ in range(3000)]
-    start = time.monotonic()
+    start = sum(os.times()[:4])  # s of a processor, also dot's
     with pytest.raises(LayoutError, match="filter by part of a name"):
         layout(named(nodes), edges)
-    assert time.monotonic() - start < 5.0
+    assert sum(os.times()[:4]) - start < 5.0
 
 
 def test_what_dot_says_when_it_fails_is_passed_on(monkeypatch):

@@ -19,8 +19,8 @@ import pytest
 
 pytestmark = pytest.mark.processes
 ROOT = Path(__file__).resolve().parents[4]
-LIMIT = 90.0  # s, until the page serves
-END_LIMIT = 20.0  # s, after Ctrl-C
+LIMIT = 180.0  # s, until the page serves
+END_LIMIT = 60.0  # s, after Ctrl-C
 CPP_NODES = {"rosout", "robot_state_publisher"}  # of Debian's
 
 
@@ -81,7 +81,7 @@ def listening(pid: int) -> set[tuple[str, bool]]:
 
 def test_course_and_page_come_and_go_together(viewer, usual_port_free):
     process, log = viewer
-    with urllib.request.urlopen(address_in(log, process), timeout=10) as page:
+    with urllib.request.urlopen(address_in(log, process), timeout=60) as page:
         assert page.status == 200
         assert b"<script" in page.read()
     sockets = listening(process.pid)

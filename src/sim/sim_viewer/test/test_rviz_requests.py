@@ -143,7 +143,7 @@ class SlowPublisher:
 def test_a_click_right_after_the_tool_was_taken_waits_for_who_listens(context, monkeypatch):
     publishers = context.node.shared(Publishers)
     key = "point", "/clicked_point"
-    publishers._publishers[key] = SlowPublisher(*key, 1), time.monotonic() + 1.0  # being opened
+    publishers._publishers[key] = SlowPublisher(*key, 1), time.monotonic() + 60.0  # being opened
     assert publishers.publish(*key, "map", (1.0, 2.0, 0.0, 0.0)) == 1
     ((message, looks),) = publishers._publishers[key][0].sent
     assert looks > 3 and message.header.frame_id == "map"

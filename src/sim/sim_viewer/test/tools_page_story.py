@@ -20,7 +20,7 @@ TABS = ("graph", "plot", "console", "topics", "services", "parameters", "bags", 
 class ToolsPage(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        rospy.wait_for_message(POSE, Pose, 30.0)
+        rospy.wait_for_message(POSE, Pose, 60.0)
         cls.folder = Path(rospy.get_param("/sim_viewer/bags").strip())
         cls.url = wait_until(lambda: rospy.get_param("/sim_viewer/url", ""), "the page's address")
         cls.browser = Browser()

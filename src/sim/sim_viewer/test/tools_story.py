@@ -19,7 +19,7 @@ RECORDED = 3.0  # s
 
 
 def rosbag(*arguments):
-    done = subprocess.run(["rosbag", *arguments], capture_output=True, text=True, timeout=30)
+    done = subprocess.run(["rosbag", *arguments], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -27,7 +27,7 @@ def rosbag(*arguments):
 class Tools(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        rospy.wait_for_message(POSE, Pose, 30.0)
+        rospy.wait_for_message(POSE, Pose, 60.0)
         cls.folder = Path(rospy.get_param("/sim_viewer/bags").strip())
         url = wait_until(lambda: rospy.get_param("/sim_viewer/url", ""), "the page's address")
         cls.link = ToolLink(url)
@@ -69,7 +69,7 @@ class Tools(unittest.TestCase):
 
     def test_the_console_has_a_line_that_was_logged(self):
         console = self.link.watch("console", level="warn")
-        end = rospy.Time.now() + rospy.Duration(10.0)
+        end = rospy.Time.now() + rospy.Duration(60.0)
         while not console.events and rospy.Time.now() < end:  # until the page has subscribed
             rospy.loginfo("nothing to see")
             rospy.logwarn("the turtle is <b>hungry</b>")
@@ -102,7 +102,7 @@ class Tools(unittest.TestCase):
         filled = form["request"].replace("x: 0.0", "x: 2.0").replace('""', '"leo"')
         answer = self.link.data("call_service", name="/spawn", request=filled)
         self.assertEqual(answer, 'name: "leo"')
-        self.assertEqual(rospy.wait_for_message("/leo/pose", Pose, 10.0).x, 2.0)
+        self.assertEqual(rospy.wait_for_message("/leo/pose", Pose, 60.0).x, 2.0)
         for request, reason in (("z: 1", "no field 'z'; turtlesim/SpawnRequest has: x, y, theta"),
                                 ("x: far", "x is 'far', which is not of type float32")):
             error = self.link.error("call_service", name="/spawn", request=request)
