@@ -12,7 +12,7 @@ from gazebo_msgs.srv import GetModelState
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo, Image, Imu, LaserScan
 
-LIMIT = 30.0  # s, wall
+LIMIT = 60.0  # s, wall
 START = (0.0, 0.0)  # m
 FOCAL_PX = 1280 / (2 * math.tan(1.3963 / 2))
 

@@ -14,7 +14,7 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 
-LIMIT = 15.0  # s, for whatever is waited for
+LIMIT = 60.0  # s, for whatever is waited for
 DRIVER = ("rosrun", "arbotix_python", "arbotix_driver")
 RADIUS = 0.2 / 0.5
 

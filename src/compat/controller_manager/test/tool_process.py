@@ -7,7 +7,7 @@ import time
 
 from roslib.packages import find_node
 
-LIMIT = 30.0  # s
+LIMIT = 60.0  # s
 
 
 def until(condition, what):

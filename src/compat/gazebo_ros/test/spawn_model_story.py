@@ -16,7 +16,7 @@ from roslib.packages import find_node
 
 URDF = '<robot name="r"><link name="base"/></robot>'
 PLAIN = ("-urdf", "-param", "robot_description", "-model", "car")
-LIMIT = 30.0  # s
+LIMIT = 60.0  # s
 
 
 def until(condition, what):

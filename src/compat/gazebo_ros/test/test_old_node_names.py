@@ -11,7 +11,7 @@ from roslib.packages import find_node
 def test_robot_state_publisher_starts_by_both_its_names(name):
     (node,) = find_node("robot_state_publisher", name)
     nowhere = {**os.environ, "ROS_MASTER_URI": "no address"}
-    ended = subprocess.run([node], env=nowhere, capture_output=True, text=True, timeout=20,
+    ended = subprocess.run([node], env=nowhere, capture_output=True, text=True, timeout=60,
                            check=False)
     assert "master URI [no address]" in ended.stderr  # it is roscpp that complains
     assert ("deprecated" in ended.stderr) == (name == "state_publisher")

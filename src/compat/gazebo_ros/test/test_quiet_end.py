@@ -7,7 +7,7 @@ import pytest
 from gazebo_ros.quiet_end import end_quietly
 from rosgraph import xmlrpc
 
-LIMIT = 10.0  # s
+LIMIT = 60.0  # s
 
 
 @pytest.fixture

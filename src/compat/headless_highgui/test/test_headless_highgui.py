@@ -165,7 +165,7 @@ def test_pictures_are_converted_for_subscribers_only(monkeypatch):
 def test_wait_key_waits_as_long_as_asked():
     start = time.monotonic()
     assert Windows(fake_cv2()).waitKey(50) == -1
-    assert 0.05 <= time.monotonic() - start < 1.0
+    assert 0.05 <= time.monotonic() - start < 20.0
 
 
 def test_wait_key_0_returns_when_the_node_is_shut_down(monkeypatch):

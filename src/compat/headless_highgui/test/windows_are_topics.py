@@ -9,7 +9,7 @@ import rospy
 import rostest
 from sensor_msgs.msg import Image
 
-LIMIT = 20  # s
+LIMIT = 60  # s
 PICTURE = np.arange(4 * 6 * 3, dtype=np.uint8).reshape(4, 6, 3)
 
 

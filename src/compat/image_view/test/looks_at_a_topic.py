@@ -13,7 +13,7 @@ import rostest
 from sensor_msgs.msg import Image
 
 COMMAND = ["rosrun", "image_view", "image_view", "image:=/camera/rgb/image_raw"]
-LIMIT = 40.0  # s
+LIMIT = 60.0  # s
 
 
 class ImageView(unittest.TestCase):

@@ -11,7 +11,7 @@ from sensor_msgs.msg import JointState
 
 class Publishes(unittest.TestCase):
     def test_publishes(self):
-        state = rospy.wait_for_message("/joint_states", JointState, 15.0)
+        state = rospy.wait_for_message("/joint_states", JointState, 60.0)
         self.assertEqual((state.name, list(state.position)), (["elbow"], [0.0]))
 
 

@@ -11,7 +11,7 @@ import rostest
 from joy.events import AXIS, BUTTON, EVENT
 from sensor_msgs.msg import Joy
 
-LIMIT = 15.0  # s, for whatever is waited for
+LIMIT = 60.0  # s, for whatever is waited for
 
 
 class PlugIn(unittest.TestCase):

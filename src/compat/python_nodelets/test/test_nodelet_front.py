@@ -50,7 +50,7 @@ def test_each_program_of_the_package_is_found(name):
 
 def test_rosrun_starts_debians():
     ended = subprocess.run(["rosrun", "nodelet", "nodelet"], capture_output=True, text=True,
-                           timeout=20, check=False)
+                           timeout=60, check=False)
     assert "nodelet usage" in ended.stdout + ended.stderr
 
 

@@ -14,7 +14,7 @@ class KinectFrames(unittest.TestCase):
         buffer = tf2_ros.Buffer()
         listener = tf2_ros.TransformListener(buffer)
         found = buffer.lookup_transform("camera_link", "camera_rgb_optical_frame", rospy.Time(0),
-                                        rospy.Duration(15.0)).transform
+                                        rospy.Duration(60.0)).transform
         listener.unregister()
         place, turn = found.translation, found.rotation
         self.assertEqual([round(v, 6) for v in (place.x, place.y, place.z)], [0.0, -0.045, 0.0])

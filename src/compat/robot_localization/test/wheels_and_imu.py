@@ -13,7 +13,7 @@ from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu
 
-LIMIT = 20.0  # s, for whatever is waited for
+LIMIT = 60.0  # s, for whatever is waited for
 SPEED, RATE = 0.4, 0.5  # m/s, rad/s
 
 

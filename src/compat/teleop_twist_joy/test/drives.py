@@ -11,7 +11,7 @@ from geometry_msgs.msg import Twist
 
 class Drives(unittest.TestCase):
     def test_drives(self):
-        command = rospy.wait_for_message("/cmd_vel", Twist, 15.0)
+        command = rospy.wait_for_message("/cmd_vel", Twist, 60.0)
         self.assertAlmostEqual(command.linear.x, 0.7, places=5)
         self.assertAlmostEqual(command.angular.z, 0.2, places=5)
 

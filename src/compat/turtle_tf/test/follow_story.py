@@ -16,7 +16,7 @@ from turtlesim.msg import Pose
 from turtlesim.srv import TeleportAbsolute
 
 NEAR = 1.0  # m
-REACH_LIMIT = 15.0  # s
+REACH_LIMIT = 60.0  # s
 TRANSLATION = re.compile(r"- Translation: \[(\S+), (\S+), (\S+)\]")
 
 
@@ -81,10 +81,14 @@ class FollowStory(unittest.TestCase):
         turtle3 = Turtle("turtle3")
         self.wait_until(lambda: turtle3.pose and turtle3.pose.linear_velocity == 1, "turtle3")
         self.assertEqual(turtle3.pose.angular_velocity, 1.0)
-        point = rospy.wait_for_message("/turtle_point_stamped", PointStamped, REACH_LIMIT)
-        self.assertEqual(point.header.frame_id, "world")
-        place, pose = point.point, turtle3.pose
-        self.assertLess(math.hypot(place.x - pose.x, place.y - pose.y), 0.5)
+
+        def beside():
+            point = rospy.wait_for_message("/turtle_point_stamped", PointStamped, REACH_LIMIT)
+            self.assertEqual(point.header.frame_id, "world")
+            place, pose = point.point, turtle3.pose
+            return math.hypot(place.x - pose.x, place.y - pose.y) < 0.5
+
+        self.wait_until(beside, "turtle3 where the sensor has it")
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
-LIMIT = 15.0  # s, for whatever is waited for
+LIMIT = 60.0  # s, for whatever is waited for
 FORWARD, RIGHT, LEFT = (0.3, 0.0), (0.0, -1.5), (0.0, 1.5)
 
 

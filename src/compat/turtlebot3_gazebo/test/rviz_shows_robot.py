@@ -17,7 +17,7 @@ from gazebo_msgs.msg import ContactsState, ContactState
 from geometry_msgs.msg import Vector3, Wrench
 from nav_msgs.msg import OccupancyGrid
 
-LIMIT = 30.0  # s, for whatever is waited for
+LIMIT = 60.0  # s, for whatever is waited for
 WIDTH, HEIGHT = 1200, 846  # px, of the screen and the window
 SAVE = os.environ.get("RVIZ_PICTURES")  # a folder, for people who want to look
 

@@ -11,7 +11,7 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
-LIMIT = 20.0  # s, for whatever is waited for
+LIMIT = 60.0  # s, for whatever is waited for
 STARTS = {"tb3_0": (-7.0, -1.0), "tb3_1": (7.0, -1.0), "tb3_2": (0.5, 3.0)}
 
 

@@ -89,7 +89,7 @@ def test_other_methods_say_what_to_type(method):
     node = nodes[f"/turtlebot3_slam_{method}"]
     assert node.required
     done = subprocess.run([sys.executable, SLAM / "nodes" / node.type, *node.args.split()],
-                          text=True, capture_output=True, timeout=20)
+                          text=True, capture_output=True, timeout=60)
     assert done.returncode == 1
     assert f"slam_methods:={method} needs" in done.stderr
     assert "slam_methods:=gmapping" in done.stderr
@@ -103,7 +103,7 @@ def test_rviz(package, name, config, monkeypatch):
     line = load(package, name)[0]["/rviz"]
     assert (line.package, line.type, line.required) == ("turtlebot3_bringup", "no_screen", False)
     done = subprocess.run([sys.executable, COMPAT / "turtlebot3_bringup" / "nodes" / line.type],
-                          text=True, capture_output=True, timeout=20)
+                          text=True, capture_output=True, timeout=60)
     assert done.returncode == 0 and len(done.stderr.splitlines()) == 1
     assert "DISPLAY" in done.stderr and "open_rviz:=false" in done.stderr
     monkeypatch.setenv("DISPLAY", ":0")

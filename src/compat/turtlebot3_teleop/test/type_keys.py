@@ -19,7 +19,7 @@ import rostest
 from geometry_msgs.msg import Twist
 
 NODE = ("rosrun", "turtlebot3_teleop", "turtlebot3_teleop_key")
-LIMIT = 15.0  # s, for whatever is waited for
+LIMIT = 60.0  # s, for whatever is waited for
 
 
 def take_terminal():

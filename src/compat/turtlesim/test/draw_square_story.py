@@ -20,7 +20,7 @@ ROUND_LIMIT = 90.0  # s; one round takes 29
 class DrawSquareStory(unittest.TestCase):
     def test_it_resets_and_drives_round(self):
         log, pose = LogLines(), Topic("/turtle1/pose", Pose)
-        rospy.wait_for_service("/turtle1/teleport_absolute", 15.0)
+        rospy.wait_for_service("/turtle1/teleport_absolute", 60.0)
         rospy.ServiceProxy("/turtle1/teleport_absolute", TeleportAbsolute)(1, 1, 1)
         node = rosrun("turtlesim", "draw_square")
         self.addCleanup(node.wait)

@@ -10,7 +10,7 @@ import rosgraph
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
-from pond_watch import LogLines, Topic, service_names, wait_until
+from pond_watch import LIMIT, LogLines, Topic, service_names, wait_until
 from sensor_msgs.msg import Image
 from std_srvs.srv import Empty
 from turtlesim.msg import Color, Pose
@@ -23,7 +23,7 @@ PER_TURTLE = {"set_pen": SetPen, "teleport_absolute": TeleportAbsolute,
 
 
 def service(name, kind):
-    rospy.wait_for_service(name, 15.0)
+    rospy.wait_for_service(name, LIMIT)
     return rospy.ServiceProxy(name, kind)
 
 
@@ -165,7 +165,7 @@ class InterfaceStory(unittest.TestCase):
         self.log.wait_for_line("Spawning turtle [turtle2] at x=[2.000000], y=[2.000000], "
                                "theta=[0.500000]", level=2)
         self.assertEqual(self.spawn(2, 2, 0, "leo").name, "leo")
-        leo = rospy.wait_for_message("/leo/pose", Pose, 15.0)
+        leo = rospy.wait_for_message("/leo/pose", Pose, LIMIT)
         self.assert_pose(leo, 2, 2, 0)
         self.kill("leo")
         self.assertEqual(topics_of("leo"), set())

@@ -9,7 +9,7 @@ import rosgraph
 import rospy
 from rosgraph_msgs.msg import Log
 
-LIMIT = 15.0  # s, for whatever is waited for
+LIMIT = 60.0  # s, for whatever is waited for
 
 
 def wait_until(condition, what, limit=LIMIT):

@@ -10,7 +10,7 @@ import rostest
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Bool
 
-LIMIT = 15.0  # s, for whatever is waited for
+LIMIT = 60.0  # s, for whatever is waited for
 
 
 class TwoDrive(unittest.TestCase):

@@ -12,9 +12,9 @@ from std_msgs.msg import String
 
 class Drives(unittest.TestCase):
     def test_drives(self):
-        command = rospy.wait_for_message("/mobile_base/commands/velocity", Twist, 15.0)
+        command = rospy.wait_for_message("/mobile_base/commands/velocity", Twist, 60.0)
         self.assertEqual(command.linear.x, 0.3)
-        self.assertEqual(rospy.wait_for_message("/cmd_vel_mux/active", String, 5.0).data,
+        self.assertEqual(rospy.wait_for_message("/cmd_vel_mux/active", String, 60.0).data,
                          "Keyboard")
 
 

@@ -31,7 +31,7 @@ def test_the_tab_is_there(tab):
 
 
 def test_typed_it_says_one_line_and_ends():
-    ended = subprocess.run(["rqt_graph"], capture_output=True, text=True, timeout=20, check=False)
+    ended = subprocess.run(["rqt_graph"], capture_output=True, text=True, timeout=60, check=False)
     assert (ended.returncode, ended.stdout) == (0, "")
     assert ended.stderr == ("rqt_graph has no window here; the page in the browser does its work, "
                             "tab Graph. Type: roslaunch sim_viewer viewer.launch\n")
@@ -46,7 +46,7 @@ def test_in_a_launch_file_it_stays_until_it_is_ended(number):
         with pytest.raises(subprocess.TimeoutExpired):
             process.wait(0.5)
         process.send_signal(number)
-        assert process.wait(10) == 0
+        assert process.wait(60) == 0
     finally:
         process.kill()
         process.wait()
