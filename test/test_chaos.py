@@ -125,12 +125,12 @@ def hands(chaos, tmp_path, monkeypatch):
 
 
 def test_a_terminal_ends_by_ctrl_c_and_is_opened_again(chaos, hands):
-    assert hands.start_usual(10.0) and list(hands.open) == ["roscore", "world", "follower"]
+    assert hands.start_usual(60.0) and list(hands.open) == ["roscore", "world", "follower"]
     assert not hands.ended("world", 0.0)
     hands.interrupt("roslaunch")  # in the world's terminal
-    assert hands.ended("world", 10.0) and list(hands.open) == ["roscore", "follower"]
+    assert hands.ended("world", 60.0) and list(hands.open) == ["roscore", "follower"]
     hands.lines["world"] = "echo '[gazebo-1] process has died [pid 7, exit code -9, cmd x]'"
-    assert hands.start_usual(10.0, last="world") and hands.open["world"].wait(10.0) == 0
+    assert hands.start_usual(60.0, last="world") and hands.open["world"].wait(60.0) == 0
     assert hands.dead_nodes() == {"gazebo"} and not hands.lives()
     assert sorted(path.name for path in hands.folder.glob("log/*.log")) == [
         "follower-0.log", "roscore-0.log", "world-0.log", "world-1.log"]
@@ -141,10 +141,10 @@ def test_a_terminal_ends_by_ctrl_c_and_is_opened_again(chaos, hands):
 def test_a_survivor_that_ends_says_why_in_one_line(chaos, hands, said, faults):
     hands.lines["follower"] = f"echo it drives; read go < {hands.folder}/go; echo {said}"
     os.mkfifo(hands.folder / "go")
-    assert hands.start_usual(10.0) and hands.wait_for(lambda: hands.said("follower"), 10.0)
+    assert hands.start_usual(60.0) and hands.wait_for(lambda: hands.said("follower"), 60.0)
     told = {name: len(hands.said(name)) for name in hands.open}
     (hands.folder / "go").write_text("\n")
-    hands.open["follower"].wait(10.0)
+    hands.open["follower"].wait(60.0)
     ended = chaos["restarts"].ended_by_themselves(hands, told, but="world")
     assert list(ended) == faults and list(hands.open) == ["roscore", "world"]
 
@@ -164,7 +164,7 @@ def test_what_is_left_behind_is_named_and_ended(chaos, tmp_path):
                             env={**os.environ, members.MARK: str(tmp_path)})
     assert members.matching(str(tmp_path), "^sleep 1000$") in ([left.pid], [])  # not yet exec'd
     assert members.end_left_over(str(tmp_path), 0.2) == ["sleep 1000"]
-    assert left.wait(10.0) == -9
+    assert left.wait(60.0) == -9
     assert members.end_left_over(str(tmp_path), 0.0) == []
 
 

@@ -292,13 +292,16 @@ def test_fast_takes_changed_tests_early_and_no_file_with_processes(runner):
 
 def test_low_priority_is_of_the_command_alone(runner, tmp_path):
     """As root and as an ordinary user, whether or not Linux groups by session."""
-    says = ("import os, time; time.sleep(0.5); print(os.nice(0)); "
+    go = tmp_path / "go"  # is there when the priority has been set
+    says = (f"import os, time\nwhile not os.path.exists({str(go)!r}): time.sleep(0.01)\n"
+            "print(os.nice(0)); "
             "group = '/proc/self/autogroup'; print(os.path.exists(group) and open(group).read())")
     command = [sys.executable, "-c", says]
     wanted = runner.processes.LOW_PRIORITY
     for low in (True, True, False):
+        go.unlink(missing_ok=True)
         code, _ = runner.processes.run_marked(
-            command, tmp_path / "log", 20.0, runner.processes.unseen, low)
+            command, tmp_path / "log", 60.0, lambda _log: go.touch(), low)
         nice, group = (tmp_path / "log").read_text().splitlines()[:2]
         assert code == 0 and int(nice) == min(19, os.nice(0) + (wanted if low else 0))
         assert "nice" not in group or int(group.split()[-1]) == (wanted if low else 0)
