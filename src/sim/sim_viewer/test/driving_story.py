@@ -222,17 +222,11 @@ class Driving(Keys):
         link = PageLink(self.url)
         self.page.key("w", True)
         wait_until(self.wheel.moving, "the first driver's command")
-
-        def takes_over():
-            """Whether the page gives way; one that stuttered is another driver, and takes back."""
-            rospy.rostime.wallsleep(QUIET)
-            before, began = len(self.wheel.heard), time.monotonic()
-            self.hold(link, 0.8, angular=0.5)
-            said = self.page.evaluate(
-                "document.querySelector('#drive-state[data-state=stopped]')?.textContent")
-            return (before, began) if said and "somebody else" in said else None
-
-        before, began = wait_until(takes_over, "a page that stops for somebody else")
+        before = len(self.wheel.heard)
+        began = time.monotonic()
+        self.hold(link, 0.8, angular=0.5)
+        self.assertIn("somebody else", self.page.wait_for(
+            "document.querySelector('#drive-state[data-state=stopped]')?.textContent"))
         wait_until(lambda: not self.wheel.moving(), "a stop of the second driver")
         heard = self.wheel.heard[before:]
         zero = next(i for i, message in enumerate(heard) if not any(message[1:]))

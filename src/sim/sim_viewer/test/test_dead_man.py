@@ -64,7 +64,33 @@ def test_who_still_presses_does_not_get_the_handle_when_the_other_lets_go(handle
     handle.release("bob")
     with pytest.raises(DrivenByAnother):
         handle.press("ann", AHEAD, 0.2)
-    assert handle.press("ann", AHEAD, 0.2 + HOLD) == [AHEAD]
+    with pytest.raises(DrivenByAnother):
+        handle.press("ann", AHEAD, 0.2 + 2 * HOLD)
+
+
+def test_a_driver_that_stuttered_does_not_take_the_handle_back(handle):
+    handle.press("ann", AHEAD, 0.0)
+    assert handle.expire(HOLD) == [STOP]
+    assert handle.press("bob", LEFT, 0.3) == [LEFT]
+    with pytest.raises(DrivenByAnother):
+        handle.press("ann", AHEAD, 0.4)
+    assert handle.driver == "bob"
+    handle.release("ann")
+    assert handle.press("ann", AHEAD, 0.5) == [STOP]
+
+
+def test_a_driver_that_stuttered_drives_on_if_nobody_else_has(handle):
+    handle.press("ann", AHEAD, 0.0)
+    assert handle.expire(HOLD) == [STOP]
+    assert handle.press("ann", AHEAD, 0.4) == [AHEAD]
+
+
+def test_who_stuttered_and_released_is_not_waited_for(handle):
+    handle.press("ann", AHEAD, 0.0)
+    handle.expire(HOLD)
+    handle.release("ann")
+    handle.press("bob", LEFT, 0.3)
+    assert handle.press("ann", AHEAD, 0.4) == [STOP]
 
 
 def test_another_ones_release_stops_nobody(handle):

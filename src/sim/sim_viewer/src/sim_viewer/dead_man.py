@@ -34,28 +34,30 @@ class DeadMan:
         # When `expire` has a command to publish, s; infinite while nobody drives.
         self.until = math.inf
         self._moving = False  # whether the last published command was not a stop
-        self._ousted: dict[Hashable, float] = {}  # replaced clients, and when they last pressed, s
+        self._last: Hashable | None = None  # who drove last, until it releases
+        self._ousted: set[Hashable] = set()  # earlier drivers that have not released
 
     def press(self, client: Hashable, command: Command, now: float) -> list[Command]:
         """A command of a client. The latest client becomes the driver, beginning with a stop.
 
-        So two people never drive one robot in turn: the earlier driver gets DrivenByAnother until
-        it has sent nothing for the length of a command (`hold`), or has released its keys.
+        So two people never drive one robot in turn: the earlier driver, also one whose command
+        expired, gets DrivenByAnother until it releases its keys.
         """
-        if now - self._ousted.get(client, -math.inf) < self._hold:
-            self._ousted[client] = now
+        if client in self._ousted:
             raise DrivenByAnother
-        self._ousted.pop(client, None)
+        if self._last not in (None, client):
+            self._ousted.add(self._last)
+        self._last = client
         due = self.expire(now)
         taken = self.driver not in (None, client)
-        if taken:
-            self._ousted[self.driver] = now
         self.driver, self.until = client, now + self._hold
         return self._stop() if taken else [*due, *self._go(command)]
 
     def release(self, client: Hashable) -> list[Command]:
         """The client released its keys, or disconnected."""
-        self._ousted.pop(client, None)
+        self._ousted.discard(client)
+        if client == self._last:
+            self._last = None
         return self._let_go() if client == self.driver else []
 
     def expire(self, now: float) -> list[Command]:
