@@ -92,8 +92,10 @@ def test_a_friction_below_zero_is_without_limit(text):
     ("", "the text is not well-formed XML: no element found at line 1, column 1"),
     ("<robot name='r'>\n <link></robot>",
      "the text is not well-formed XML: mismatched tag at line 2, column 10"),
-    ("\n<sdf version='1.6'>\n<model name=m/></sdf>",
-     "the text is not well-formed XML: not well-formed (invalid token) at line 3, column 13"),
+    ("\n<sdf version='1.6'>\n<model name/></sdf>",
+     "the text is not well-formed XML: not well-formed (invalid token) at line 3, column 12"),
+    ("<sdf>\n<model name=m></sdf>", "the text is not well-formed XML: mismatched tag at line 2, "
+     'column 19; line 2: write name="..." with quotes'),
 ])
 def test_what_is_no_xml_gets_the_spawn_services_sentence(load, text, reason):
     with pytest.raises(FormatError) as raised:

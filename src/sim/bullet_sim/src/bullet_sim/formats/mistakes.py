@@ -51,12 +51,20 @@ def mistake(message: object) -> None:
     """Log an error line, once per load."""
     report = _report.get() or _Report()
     file = report.files[-1] if report.files else ""
-    line = f"{file}: {message}" if file else str(message)
+    _log_once(report, f"{file}: {message}" if file else str(message), logging.ERROR)
+
+
+def remark(line: str) -> None:
+    """Log a warning, once per load."""
+    _log_once(_report.get() or _Report(), line, logging.WARNING)
+
+
+def _log_once(report: _Report, line: str, level: int) -> None:
     if line in report.lines:
         return
     report.lines.add(line)
     if len(report.lines) <= MOST_LINES:
-        logger.error("%s", shortened(line, LONGEST_LINE))
+        logger.log(level, "%s", shortened(line, LONGEST_LINE))
 
 
 def instead(error: SimulationError, used: object) -> None:

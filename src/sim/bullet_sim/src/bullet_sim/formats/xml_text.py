@@ -9,6 +9,8 @@ from xml.parsers import expat
 
 from bullet_sim.errors import FormatError
 from bullet_sim.files import check_file
+from bullet_sim.formats.mistakes import remark
+from bullet_sim.formats.tinyxml import as_xml
 
 LARGEST_TEXT = 32 * 2**20  # bytes; its elements take about ten times as much memory
 MOST_ELEMENTS = 300_000
@@ -22,28 +24,40 @@ BYTE_ORDER_MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\
 def parse_xml(text: str, what: str = "XML") -> Element:
     """Root element of a text. Prefixes such as `xacro:` stay part of the tag, declared or not.
 
-    FormatError for a text that is not well-formed or too large.
+    What Gazebo's parser takes beyond XML is taken, with one warning. FormatError for a text that
+    it refuses, too, or that is too large.
     """
     if len(text) > LARGEST_TEXT:
         raise FormatError(_too_large(what, len(text)))
-    stripped = text.lstrip("\ufeff \t\r\n")
-    skipped_lines = text[:len(text) - len(stripped)].count("\n")
-    if declaration := DECLARATION.match(stripped):
-        blank = re.sub(r"[^\n]", " ", declaration[0])  # positions in error messages stay
-        stripped = blank + stripped[declaration.end():]
+    content = text.lstrip("\ufeff \t\r\n")
+    if declaration := DECLARATION.match(content):
+        content = content[declaration.end():]
+    before = text[:len(text) - len(content)]
+    content = re.sub(r"[^\n]", " ", before) + content  # positions in error messages stay
+    try:
+        return _parsed(content, what)
+    except expat.ExpatError:
+        mended, advice = as_xml(content)
+    try:
+        root = _parsed(mended, what)
+    except expat.ExpatError as error:
+        reason = expat.ErrorString(error.code)
+        place = f"line {error.lineno}, column {error.offset + 1}"
+        also = f"; {advice}" if advice else ""
+        raise FormatError(f"{what} is not well-formed XML: {reason} at {place}{also}") from None
+    remark(f"{what}, {advice}; taken all the same, as by Gazebo")
+    return root
+
+
+def _parsed(text: str, what: str) -> Element:
     parser = expat.ParserCreate("utf-8")
-    builder = _BoundedBuilder(parser, what, skipped_lines)
+    builder = _BoundedBuilder(parser, what)
     parser.StartElementHandler = builder.start
     parser.EndElementHandler = builder.end
     parser.CharacterDataHandler = builder.data
     parser.EntityDeclHandler = builder.refuse_entity
     parser.buffer_text = True
-    try:
-        parser.Parse(stripped.encode("utf-8", errors="replace"), True)
-    except expat.ExpatError as error:
-        reason = expat.ErrorString(error.code)
-        place = f"line {error.lineno + skipped_lines}, column {error.offset + 1}"
-        raise FormatError(f"{what} is not well-formed XML: {reason} at {place}") from None
+    parser.Parse(text.encode("utf-8", errors="replace"), True)
     return builder.close()
 
 
@@ -68,7 +82,7 @@ def decoded(content: bytes) -> str:
     for mark, encoding in BYTE_ORDER_MARKS.items():
         if content.startswith(mark):
             return content.decode(encoding, errors="replace")
-    declared = DECLARED.match(content[:200].lstrip())
+    declared = DECLARED.search(content[:1000])  # a comment may come first
     if declared:
         try:
             return content.decode(declared[1].decode("ascii"))
@@ -80,11 +94,10 @@ def decoded(content: bytes) -> str:
 class _BoundedBuilder(TreeBuilder):
     """Builds the tree until a limit is exceeded."""
 
-    def __init__(self, parser: expat.XMLParserType, what: str, skipped_lines: int):
+    def __init__(self, parser: expat.XMLParserType, what: str):
         super().__init__()
         self._parser = parser
         self._what = what
-        self._skipped_lines = skipped_lines
         self._depth = 0
         self._count = 0
 
@@ -107,8 +120,7 @@ class _BoundedBuilder(TreeBuilder):
                      "write its text where it is used")
 
     def _refuse(self, reason: str) -> NoReturn:
-        line = self._parser.CurrentLineNumber + self._skipped_lines
-        raise FormatError(f"{self._what}, line {line}: {reason}")
+        raise FormatError(f"{self._what}, line {self._parser.CurrentLineNumber}: {reason}")
 
 
 def _too_large(what: str, size: int) -> str:

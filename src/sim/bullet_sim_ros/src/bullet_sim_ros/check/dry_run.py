@@ -24,7 +24,8 @@ LOGGERS = ("bullet_sim", "rosout")
 NOT_CAPTURED = (unknown_plugins.name, defaults.name)  # the former are looked up in the text
 # Their warnings are about things that work differently; those of others, about missing things.
 GO_ON = ("bullet_sim.plugins", "bullet_sim.control", "rosout", "bullet_sim.sensors",
-         "bullet_sim.meshes.loading", "bullet_sim.formats.urdf.transmission")
+         "bullet_sim.meshes.loading", "bullet_sim.formats.mistakes",
+         "bullet_sim.formats.urdf.transmission")
 
 
 @dataclass(frozen=True)

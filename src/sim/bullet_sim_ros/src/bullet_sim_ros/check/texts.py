@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from xml.etree.ElementTree import Element, ParseError, fromstring
+from xml.etree.ElementTree import Element
 
 from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.formats import Resources, load_light, load_model, load_world
 from bullet_sim.formats.resources import DATA_FOLDER
 from bullet_sim.formats.sdf.include import model_file
-from bullet_sim.formats.xml_text import read_bytes
-from bullet_sim.formats.xml_values import child_text, read_xml_file
+from bullet_sim.formats.xml_text import decoded, read_bytes
+from bullet_sim.formats.xml_values import child_text, parse_xml, read_xml_file
 from bullet_sim_ros.check.dry_run import LogLine, listening, try_model, try_world
 from bullet_sim_ros.check.elements import Lookup
 from bullet_sim_ros.check.findings import Finding, problem
@@ -39,7 +39,7 @@ class TextChecker:
         except SimulationError as error:
             return [problem(where, "robot", error)]
         found = self.model_text(text, where)
-        if shown_only and is_for_show(text) and found[0].how.endswith(NEEDS_MASS):
+        if shown_only and found[0].how.endswith(NEEDS_MASS) and is_for_show(text):
             how = "only to be shown: nothing in it has mass"
             return [Finding(where, "robot", APPROXIMATED, how)]
         return found
@@ -78,24 +78,24 @@ class TextChecker:
         where = str(path)
         with listening() as captured:
             try:
+                text = decoded(read_bytes(path))
                 description = load_world(path, self._resources)
                 try_world(description, parameters or {})
             except (SimulationError, OSError) as error:
                 return [problem(where, "world", error)]
         name = f"world {description.name} ({len(description.models)} models)"
-        text = path.read_text(encoding="utf-8-sig", errors="replace")
         details = _not_failed(self._details(text, where, path.parent), captured)
         return [Finding(where, name, WORKS), *details, *_logged(captured, where)]
 
     def _details(self, text: str, where: str, folder: Path | None) -> list[Finding]:
         """Findings about plugins and elements of the text in `folder`, and of included files."""
-        try:
-            root = fromstring(text)
-        except ParseError:
-            return []  # the simulator's reader is more tolerant than this parser
-        found = list(Lookup(self._rows, where).findings(root))
-        for uri, inner in included(root, folder, self._resources, set()):
-            found += Lookup(self._rows, f"{where}, included {uri}").findings(inner)
+        with listening():  # what the reader warns of was said when the text was loaded
+            root = _root(text)
+            if root is None:
+                return []
+            found = list(Lookup(self._rows, where).findings(root))
+            for uri, inner in included(root, folder, self._resources, set()):
+                found += Lookup(self._rows, f"{where}, included {uri}").findings(inner)
         return found
 
 
@@ -121,13 +121,18 @@ def _not_failed(details: list[Finding], captured: list[LogLine]) -> list[Finding
             if not any(f"{found.part} is not loaded" in each.line for each in captured)]
 
 
+def _root(text: str) -> Element | None:
+    try:
+        return parse_xml(text)
+    except FormatError:
+        return None
+
+
 def is_for_show(text: str) -> bool:
     """Whether it is a URDF in which nothing has mass: RViz shows it, no simulator can move it."""
-    try:
-        root = fromstring(text)
-    except ParseError:
-        return False
-    return root.tag == "robot" and root.find("link") is not None and (
+    with listening():
+        root = _root(text)
+    return root is not None and root.tag == "robot" and root.find("link") is not None and (
         root.find("link/inertial") is None)
 
 
