@@ -11,7 +11,7 @@ import sys
 import pytest
 
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources, load_light, load_model
+from bullet_sim.formats import Resources, load_light, load_model, load_world
 
 INERTIAL = """<inertial><mass value="1"/>
     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"""
@@ -109,3 +109,35 @@ def test_the_xacro_command_does_not_wait_for_the_model_readers():
     code = "import sys, bullet_sim.formats.xacro.files; sys.exit('numpy' in sys.modules)"
     env = {"PYTHONPATH": os.pathsep.join(sys.path)}
     assert subprocess.run([sys.executable, "-c", code], env=env, check=False).returncode == 0
+
+
+def test_hexadecimal_numbers(caplog):
+    link = load_model("""<sdf version="1.6"><model name="m"><link name="l">
+      <inertial><mass>0x10</mass></inertial><collision name="c"><geometry><sphere>
+      <radius>0X1p-1</radius></sphere></geometry><surface><contact><collide_bitmask>0x0f
+      </collide_bitmask></contact></surface></collision></link></model></sdf>""",
+                      Resources()).links[0]
+    (collision,) = link.collisions
+    assert (link.inertial.mass, collision.geometry.radius) == (16.0, 0.5)
+    assert collision.surface.collide_bitmask == 15
+    assert not caplog.records
+
+
+STATIC = """<sdf version="1.6"><model name="m"><static>{}</static><link name="l"><inertial>
+  <pose>nan nan nan 0 0 0</pose><mass>inf</mass><inertia><ixx>nan</ixx><iyy>-nan</iyy>
+  <izz>-inf</izz><ixy>0.5</ixy></inertia></inertial></link>{}</model></sdf>"""
+
+
+def test_inertia_without_end_is_silent_in_what_stands_still(caplog, tmp_path):
+    nested = STATIC.format(0, "").partition("<static>")[2].partition("</static>")[2]
+    inner = f"<model name='n'>{nested.removesuffix('</sdf>')}"
+    model = load_model(STATIC.format("true", inner), Resources())
+    assert [link.inertial.inertia[1] for link in model.links] == [0.5, 0.5]
+    (tmp_path / "model.sdf").write_text(STATIC.format("false", ""))
+    world = tmp_path / "w.world"
+    world.write_text("<sdf version='1.6'><world name='w'><include><static>1</static>"
+                     f"<uri>{tmp_path}/model.sdf</uri></include></world></sdf>")
+    assert load_world(world, Resources()).models[0].static
+    assert not caplog.records
+    load_model(STATIC.format("false", ""), Resources())
+    assert len(caplog.records) == 5

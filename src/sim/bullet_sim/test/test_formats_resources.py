@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from bullet_sim.errors import ResourceNotFound
-from bullet_sim.formats import Resources
+from bullet_sim.formats import Resources, load_world
 from bullet_sim.formats.resources import DATA_FOLDER
 
 
@@ -32,6 +32,17 @@ def test_first_model_path_wins(tmp_path):
     assert both.resolve("model://X/model.sdf") == tmp_path / "two/X/model.sdf"
     first = touch(tmp_path / "one/X/model.sdf")
     assert both.resolve("model://X/model.sdf") == first
+
+
+def test_three_slashes_are_as_good_as_two(tmp_path):
+    mesh = touch(tmp_path / "X/meshes/x.dae")
+    assert Resources([tmp_path]).resolve("model:///X/meshes/x.dae") == mesh
+    (tmp_path / "X/model.sdf").write_text(
+        '<sdf version="1.6"><model name="x"><link name="l"/></model></sdf>')
+    world = tmp_path / "w.world"
+    world.write_text('<sdf version="1.6"><world name="w"><include><uri>model:///X/model.sdf</uri>'
+                     "</include></world></sdf>")
+    assert [model.name for model in load_world(world, Resources([tmp_path])).models] == ["x"]
 
 
 def test_package_file_absolute_and_relative(tmp_path):

@@ -216,7 +216,7 @@ def test_obj_without_its_material_library_still_loads(tmp_path):
      "the header says 2 triangles, 1 are there"),
     ("cut_text.stl", b"solid x\nvertex 0 0 0\nvertex 1 0 0\n", "'x' has a facet without three"),
     ("word.stl", b"solid\nvertex 0 0 zero\n", "could not convert string to float: 'zero'"),
-    ("cut.dae", b"<COLLADA", "XML Parsing Error"),
+    ("cut.dae", b"<COLLADA", "it is not well-formed XML: "),
     ("archive.dae", b"PK\3\4" + bytes(60), "it is a ZIP archive; unpack it"),
     ("text.obj", b"hello", "no triangles"),
     ("holes.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 7\n", "asks for v number 7, there are 2"),
@@ -253,3 +253,69 @@ def test_collision_mesh_merges_corners(tmp_path, box):
     vertices, faces = collision_mesh(geometry)
     assert (vertices.shape, faces.shape) == ((8, 3), (12, 3))
     assert trimesh.Trimesh(vertices, faces).volume == pytest.approx(12.0)
+
+
+# --- COLLADA that is not whole
+
+
+def test_a_matrix_that_flattens_leaves_a_floor(tmp_path):
+    path = tmp_path / "flat.dae"
+    flat = "<matrix>1 0 0 0  0 1 0 0  0 0 0 0.5  0 0 0 1</matrix>"
+    text = DAE.format(unit="1", up="Z_UP", image="i.png")
+    normals = ('<source id="n"><float_array id="na" count="9">0 0 1 0 0 1 0 0 1</float_array>'
+               '<technique_common><accessor source="#na" count="3" stride="3">'
+               '<param name="X" type="float"/><param name="Y" type="float"/>'
+               '<param name="Z" type="float"/></accessor></technique_common></source><vertices')
+    path.write_text(text.replace("<translate>10 0 0</translate>", flat).replace(
+        "<vertices", normals).replace('source="#p"/></vertices>', 'source="#p"/>'
+                                      '<input semantic="NORMAL" source="#n"/></vertices>'))
+    (part,) = load_mesh(Mesh(str(path), submesh="left"))
+    np.testing.assert_allclose(part.vertices, [(0, 0, 0.5), (1, 0, 0.5), (0, 2, 0.5)])
+    np.testing.assert_allclose(part.normals, [(0, 0, 1)] * 3)
+
+
+@pytest.mark.parametrize("there, gone, said", [
+    ("<init_from>img<", "<init_from>jpg<", "image 'jpg', surface 'surface', texture 'sampler'"),
+    ("<source>surface<", "<source>surfaces<", "surface 'surfaces', texture 'sampler'"),
+    ('texture="sampler"', 'texture="other.png"', "texture 'other.png'"),
+    ('url="#pictured"', 'url="#painting"', "effect 'painting', material 'm2'"),
+    ('url="#pictured"', 'url="other.dae#pictured"', "effect 'other.dae#pictured', material 'm2'"),
+    ('target="#m2"', 'target="#m3"', "material 'm3'"),
+    ('id="img"', 'id="image"', "image 'img', surface 'surface', texture 'sampler'"),
+    ('source="#t" offset', 'source="#u" offset', "source 'u'"),
+    ('source="#p"/></vertices>', 'source="#p"/><input semantic="NORMAL" source="#n"/></vertices>',
+     "source 'n'"),
+    ('<node id="a" name="left">', '<node id="a" name="left"><instance_node url="#wheel"/>'
+     '<instance_camera url="#eye"/>', "node 'wheel'"),
+    ('<node id="a" name="left">', '<node id="a" name="left"><instance_geometry url="#cube"/>',
+     "geometry 'cube'"),
+    ('visual_scene url="#s"', 'visual_scene url="#scene"', "visual_scene 'scene'"),
+    ("<library_effects>", '<library_effects><effect id="e"><profile_GLSL/></effect>', ""),
+    ("<lambert>\n        <diffuse>", '<lambert>\n        <ambient><texture texture="x"/></ambient>'
+     "<diffuse>", "texture 'x'"),
+    ("</technique></profile_COMMON></effect>\n  </lib", "<extra><technique profile='F'><bump>"
+     "<texture texture='x'/></bump></technique></extra></technique></profile_COMMON></effect>\n"
+     "  </lib", "texture 'x'"),
+])
+def test_triangles_stay_whatever_a_collada_file_refers_to(tmp_path, caplog, there, gone, said):
+    path = tmp_path / "dangling.dae"
+    text = DAE.format(unit="1", up="Z_UP", image="picture.png")
+    assert there in text
+    path.write_text(text.replace(there, gone))
+    (tmp_path / "picture.png").write_bytes(b"")
+    left, right = load_mesh(Mesh(str(path)))
+    assert len(left.faces) == len(right.faces) == 1
+    assert caplog.messages == ([f"mesh {path}: it refers to what is not in it: {said}; drawn "
+                                "without"] if said else [])
+    assert left.material.diffuse == pytest.approx((0.2, 0.4, 0.6, 0.25))
+    if "texture" in said and "x" not in said:  # neither black nor the missing picture
+        assert right.material.texture is None and right.material.diffuse == (0.7, 0.7, 0.7, 1.0)
+
+
+def test_a_collada_file_cannot_grow_by_its_entities(tmp_path):
+    bomb = "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10 if n else "lol"}">' for n in range(10))
+    for encoding in ("utf-8", "utf-16"):
+        path = tmp_path / f"{encoding}.dae"
+        path.write_text(f"<!DOCTYPE a [{bomb}]><COLLADA b='&e9;'>&e9;</COLLADA>", encoding)
+        with pytest.raises(FormatError, match="it declares entities"):
+            load_mesh(Mesh(str(path)))

@@ -68,7 +68,7 @@ class Resources:
         if not separator:
             return self._first(uri, self._plain_candidates(uri, base))
         if scheme == "model":
-            return self._first(uri, [folder / rest for folder in self.model_paths])
+            return self._first(uri, [folder / rest.lstrip("/") for folder in self.model_paths])
         if scheme == "package":
             package, _, inside = rest.partition("/")
             return self._first(uri, [self.package_folder(package) / inside])

@@ -6,6 +6,7 @@ raise FormatError.
 """
 
 import math
+import re
 import textwrap
 from collections.abc import Callable, Collection, Sequence
 from typing import Any, TypeVar
@@ -23,6 +24,7 @@ __all__ = [
     "shown", "size", "vector", "vector_text",
 ]
 
+HEXADECIMAL = re.compile("[+-]?0x", re.IGNORECASE)
 TRUE_WORDS = ("true", "1")
 # Lengths, masses and poses beyond this are mistakes, and their squares overflow.
 # (Limits of joints may be larger: saved files contain the largest number there is.)
@@ -32,10 +34,14 @@ Value = TypeVar("Value")
 
 
 def numbers(text: str, count: int, where: str) -> tuple[float, ...]:
-    """`count` finite numbers separated by white space. FormatError for anything else."""
+    """`count` finite numbers separated by white space. FormatError for anything else.
+
+    Hexadecimal ones begin with 0x, as in sdformat's Param.cc.
+    """
     words = text.split()
     try:
-        values = tuple(float(word) for word in words)
+        values = tuple(float.fromhex(word) if HEXADECIMAL.match(word) else float(word)
+                       for word in words)
     except ValueError:
         values = ()
     if len(values) != count or any(math.isnan(value) for value in values):

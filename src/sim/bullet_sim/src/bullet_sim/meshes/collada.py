@@ -5,6 +5,7 @@ whatever up_axis says; models for Gazebo are made accordingly, so a Y_UP file is
 Skins are drawn in their bind pose.
 """
 
+import io
 import logging
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,12 +16,14 @@ import numpy as np
 from bullet_sim.description import Material, Rgba
 from bullet_sim.errors import FormatError
 from bullet_sim.files import find_beside
+from bullet_sim.meshes.collada_references import without_dangling
 from bullet_sim.meshes.part import MeshPart, NamedPart, shaded
 from bullet_sim.meshes.smoothing import smooth_shaded
 
 _log = logging.getLogger(__name__)
 
 ZIP = b"PK"
+MOST_NAMED = 5  # missing things, in a warning
 MOST_NODES = 20_000  # counted as often as they are instanced: ten lines can ask for millions
 MOST_TRIANGLES = 4_000_000
 
@@ -30,13 +33,7 @@ def read_collada(path: Path, split: bool) -> list[NamedPart]:
 
     FormatError for more than MOST_NODES nodes or MOST_TRIANGLES triangles, and for an archive.
     """
-    import collada
-
-    with path.open("rb") as file:
-        if file.read(len(ZIP)) == ZIP:  # pycollada would unpack it, whatever its size
-            raise FormatError("it is a ZIP archive; unpack it and name the .dae inside")
-    ignored = [collada.common.DaeUnsupportedError, collada.common.DaeBrokenRefError]
-    document = collada.Collada(str(path), ignore=ignored)
+    document = _document(path)
     if document.scene is None:
         return []
     unit = document.assetInfo.unitmeter or 1.0
@@ -53,6 +50,28 @@ def read_collada(path: Path, split: bool) -> list[NamedPart]:
                     raise FormatError(f"it has more than {MOST_TRIANGLES} triangles; export it "
                                       "with fewer")
     return parts
+
+
+def _document(path: Path) -> Any:
+    """The document, with one warning if it refers to things that it lacks."""
+    import collada
+    from lxml import etree
+
+    content = path.read_bytes()
+    if content.startswith(ZIP):  # pycollada would unpack it, whatever its size
+        raise FormatError("it is a ZIP archive; unpack it and name the .dae inside")
+    if b"<!ENTITY" in content.replace(b"\0", b""):  # any encoding; they can grow without limit
+        raise FormatError("it declares entities; write their text where it is used")
+    try:
+        root = etree.fromstring(content, etree.XMLParser(huge_tree=True))
+    except etree.XMLSyntaxError as error:
+        raise FormatError(f"it is not well-formed XML: {error}") from None
+    if missing := without_dangling(root):
+        _log.warning("mesh %s: it refers to what is not in it: %s; drawn without", path,
+                     ", ".join(missing[:MOST_NAMED]) + (", ..." if missing[MOST_NAMED:] else ""))
+        content = etree.tostring(root)
+    ignored = [collada.common.DaeUnsupportedError, collada.common.DaeBrokenRefError]
+    return collada.Collada(io.BytesIO(content), ignore=ignored)
 
 
 def _instances(node: Any, matrix: np.ndarray, name: str, left: Iterator[int],
@@ -122,7 +141,8 @@ def _part(triangles: Any, matrix: np.ndarray, material: Material | None) -> Mesh
     if len(triangles.texcoordset):
         uv = of_corners(triangles.texcoordset[0], triangles.texcoord_indexset[0])
         uv = uv[:, :2].astype(np.float32)
-    if triangles.normal is None or triangles.normal_index is None:
+    flattens = not np.linalg.det(matrix[:3, :3])  # it says nothing about normals then
+    if triangles.normal is None or triangles.normal_index is None or flattens:
         return smooth_shaded(vertices, faces, uv, material)
     normals = of_corners(triangles.normal, triangles.normal_index)
     normals = normals @ np.linalg.inv(matrix[:3, :3])

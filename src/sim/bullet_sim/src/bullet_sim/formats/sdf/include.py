@@ -8,6 +8,7 @@ from bullet_sim.description import LightDescription, ModelDescription
 from bullet_sim.errors import FormatError, ResourceNotFound, SimulationError
 from bullet_sim.formats.mistakes import mistake, reading
 from bullet_sim.formats.sdf.light import read_light
+from bullet_sim.formats.sdf.link import drop_endless_inertia
 from bullet_sim.formats.sdf.sensor import read_plugins
 from bullet_sim.formats.source import NEWEST_SDF, Source, sdf_version
 from bullet_sim.formats.xml_values import child_text, flag, pose, read_xml_file
@@ -44,6 +45,8 @@ def _read(include: Element, uri: str, source: Source) -> Found:
     source.files.append(file)
     root = read_xml_file(file)
     inner = source.entering(file).of_root(root)
+    if flag(include, "static", False):
+        drop_endless_inertia(root)
     light = root.find("light")
     with reading(str(file)):
         if root.tag != "robot" and root.find("model") is None and light is not None:

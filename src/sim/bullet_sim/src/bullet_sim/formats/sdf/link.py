@@ -16,6 +16,7 @@ from bullet_sim.formats.xml_values import amount, child_text, flag, pose, size
 from bullet_sim.pose import IDENTITY
 
 WORLD = "world"
+ENDLESS = {"nan", "inf", "infinity"}
 Placed = TypeVar("Placed")  # a description with a pose, or None
 TENSOR = (("ixx", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyy", 1.0), ("iyz", 0.0), ("izz", 1.0))
 
@@ -98,6 +99,19 @@ class _PartPlaces:
         link_in_model = self._frames.in_model(self._link)
         frame_in_link = link_in_model.inverse() * self._frames.in_model(frame)
         return replace(part, pose=frame_in_link * part.pose)
+
+
+def drop_endless_inertia(model: Element) -> None:
+    """Take `nan` and `inf` out of a static model, as nothing reads its inertia; Gazebo is silent.
+
+    Exporters write them for what has no mass.
+    """
+    for inertial in model.iter("inertial"):
+        for parent in list(inertial.iter()):
+            for value in list(parent):
+                words = (value.text or "").lower().replace("-", " ").replace("+", " ").split()
+                if not ENDLESS.isdisjoint(words):
+                    parent.remove(value)
 
 
 def read_inertial(element: Element, where: str) -> Inertial:

@@ -10,7 +10,7 @@ from bullet_sim.formats.mistakes import all_that_can, mistake, or_without
 from bullet_sim.formats.sdf.frames import MODEL, Frames, add_model_frames, relative_to
 from bullet_sim.formats.sdf.include import read_include
 from bullet_sim.formats.sdf.joint import read_joint
-from bullet_sim.formats.sdf.link import read_link
+from bullet_sim.formats.sdf.link import drop_endless_inertia, read_link
 from bullet_sim.formats.sdf.sensor import read_plugins
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import flag, pose
@@ -30,6 +30,9 @@ def read_model(element: Element, source: Source, inside: str = "") -> ModelDescr
     for tag in NOT_SUPPORTED:
         if element.find(tag) is not None:
             source.warn_once(f"{where}: <{tag}> is not supported, left out")
+    static = flag(element, "static", False)
+    if static:
+        drop_endless_inertia(element)
     frames = Frames(source, name)
     add_model_frames(frames, element, where)
     nested = _place(_nested_models(element, source, where), frames)
@@ -47,7 +50,7 @@ def read_model(element: Element, source: Source, inside: str = "") -> ModelDescr
     return ModelDescription(
         name=name,
         pose=pose(element, where),
-        static=flag(element, "static", False),
+        static=static,
         self_collide=flag(element, "self_collide", False),
         auto_disables=flag(element, "allow_auto_disable", True),
         links=tuple(links),
