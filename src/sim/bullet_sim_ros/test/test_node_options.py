@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 import rosgraph
-import rospy
 
 from bullet_sim_ros import log_bridge, node
 from bullet_sim_ros.node import open_world, parse
@@ -83,7 +82,7 @@ def test_a_master_that_ends_meanwhile_is_one_line(monkeypatch, capsys, caplog, l
         monkeypatch.setattr(node, name, lambda *_: None)
     monkeypatch.setattr(node, "read_node_parameters", NodeParameters)
     monkeypatch.setattr(node, lost, lose)
-    monkeypatch.setattr(rospy, "init_node", lambda *_, **__: None)
+    monkeypatch.setattr(node, "register", lambda _world: True)
     monkeypatch.setattr("sys.argv", ["gzserver", "--world", WORLD])
     monkeypatch.setattr("sys.setswitchinterval", lambda _: None)
     monkeypatch.setattr(node, "end_by_signals", lambda *_: None)
@@ -132,8 +131,7 @@ def test_a_world_that_is_not_there_is_a_fatal_line_and_the_exit_code(monkeypatch
                                      "--physics", "newton"])
     verbose = []
     monkeypatch.setattr(rosgraph, "is_master_online", lambda: True)
-    monkeypatch.setattr(rospy, "init_node", lambda *_words, **_options: None)
-    monkeypatch.setattr(rospy.rostime, "set_rostime_initialized", lambda _yes: None)
+    monkeypatch.setattr(node, "register", lambda _world: True)
     monkeypatch.setattr(node, "send_promptly", lambda: None)
     monkeypatch.setattr(node, "keep_every_publisher", lambda: None)
     monkeypatch.setattr(node, "forward_core_log", verbose.append)

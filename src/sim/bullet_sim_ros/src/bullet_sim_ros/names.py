@@ -47,6 +47,7 @@ LOCKSTEP_TIMEOUT = "~lockstep_timeout"
 LOCKSTEP_SENSOR = "~lockstep_sensor"
 STATE_LOG = "~state_log"
 PROFILE = "~profile"
+RUNNING = "~running"  # set by the node: {world: its file's name, since: s, wall}
 
 
 def join(namespace: str, name: str) -> str:

@@ -22,6 +22,7 @@ from bullet_sim_ros import names
 from bullet_sim_ros.lockstep import split
 from bullet_sim_ros.log_bridge import forward_core_log
 from bullet_sim_ros.metrics import MetricsTopic
+from bullet_sim_ros.only_simulator import register
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters, read_node_parameters
 from bullet_sim_ros.plugins import register_plugins
@@ -156,21 +157,20 @@ def start(options: argparse.Namespace) -> Simulation | None:
 
 
 def main() -> int:
-    """Run until shutdown; returns 1 if the world cannot be opened or the master ends before."""
+    """Run until shutdown; returns 1 if a simulator runs already, if the world cannot be opened, or
+    if the master ends before."""
     options = parse(rospy.myargv(sys.argv)[1:])
     sys.setswitchinterval(SWITCH_INTERVAL)
     sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too
     wait_for_master()
     send_promptly()
     keep_every_publisher()
-    # This node publishes /clock: rospy must not wait for a /clock that this very node publishes.
-    # Signals are handled here: rospy's handler would interrupt the loop while it holds locks.
-    rospy.init_node("gazebo", disable_rostime=True, disable_signals=True)
-    rospy.rostime.set_rostime_initialized(True)
-    forward_core_log(options.verbose)
-    check_engine(options.physics)
-    register_plugins()
     try:
+        if not register(options.world):
+            return 1
+        forward_core_log(options.verbose)
+        check_engine(options.physics)
+        register_plugins()
         simulation = start(options)
     except MASTER_LOST as error:
         rospy.logfatal("the ROS master at %s has ended while the simulator started: %s; start both "

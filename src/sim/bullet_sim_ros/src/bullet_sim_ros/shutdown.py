@@ -26,7 +26,7 @@ def end_by_signals(stop: Callable[[], None]) -> None:
 
 
 def end_before_topics(stop: Callable[[], None]) -> threading.Event:
-    """Make a shutdown from outside (`rosnode kill`, a second /gazebo) wait for the returned event,
+    """Make a shutdown from outside (`rosnode kill`) wait for the returned event,
     the loop's end, before it closes topics: rospy reports a shutdown only afterwards, and until
     then publishing raises an exception."""
     ended = threading.Event()

@@ -17,6 +17,7 @@ LAUNCHERS = (["rosrun", "xacro"], ["python"], ["python2"], ["python3"])
 WITHOUT_EFFECT = frozenset(["--inorder", "-i", "--legacy", "--check-order", "--includes",
                             "--xacro-ns", "-q", "-v"])
 OF_ROSLAUNCH = "rosversion"  # in roslaunch's own roscore.xml; it changes nothing
+OF_EMPTY_WORLD = "unless_running"  # prints its arguments
 
 
 class NotRun(str):
@@ -37,6 +38,8 @@ def output_of(command: str, find_package: FindPackage) -> str:
     program = Path(program).name
     if program == OF_ROSLAUNCH:
         return ""
+    if program == OF_EMPTY_WORLD:
+        return " ".join(words)
     if program == "cat" and words and not any(word.startswith("-") for word in words):
         return "".join(decoded(read_bytes(Path(word))) for word in words)
     words = [word for word in words if word not in WITHOUT_EFFECT]

@@ -1,0 +1,66 @@
+"""One simulator of a name at a master: a second one ends before the first notices anything.
+
+Twice: `refuse_launch` while roslaunch reads empty_world.launch, before it sets a parameter or
+starts a node; and `register` in the node itself, however it was started.
+"""
+
+import time
+from pathlib import Path
+
+import rosgraph
+import rospy
+
+from bullet_sim_ros import names
+from bullet_sim_ros.already_running import Sign, registering, sign_of_life
+
+DEFAULT_NAME = "gazebo"
+RUNS_ALREADY = ("A simulator runs already on this master (%s). End it with Ctrl-C in its terminal, "
+                "then type this again.")
+HANGS = ("A simulator is on this master, but does not answer (%s). End it with: killall -9 "
+         "gzserver, then type this again.")
+UNITS = ((3600, "h"), (60, "min"), (1, "s"))
+
+
+def refusal(master_uri: str, name: str) -> tuple[str, ...]:
+    """Why no simulator may start under this full name: a format string and its argument; else ().
+
+    OSError if there is no master.
+    """
+    sign = sign_of_life(master_uri, name)
+    if sign is Sign.GONE:
+        return ()
+    return RUNS_ALREADY if sign is Sign.ANSWERS else HANGS, _what_runs(master_uri, name)
+
+
+def register(world: str) -> bool:
+    """Become the node, unless its name's simulator runs: then say so. `world`: its file.
+
+    OSError if the master ends meanwhile.
+    """
+    name = rosgraph.names.resolve_name(
+        rospy.names.get_mappings().get("__name", DEFAULT_NAME), rospy.get_name())
+    uri = rosgraph.get_master_uri()
+    with registering(uri, name):
+        refused = refusal(uri, name)
+        if refused:
+            rospy.logfatal(*refused)
+            return False
+        # This node publishes /clock: rospy must not wait for a /clock that this very node
+        # publishes. Signals are handled here: rospy's handler would interrupt the loop while it
+        # holds locks.
+        rospy.init_node(DEFAULT_NAME, disable_rostime=True, disable_signals=True)
+        rospy.set_param(names.RUNNING, {"world": Path(world).stem, "since": time.time()})
+    rospy.rostime.set_rostime_initialized(True)
+    return True
+
+
+def _what_runs(master_uri: str, name: str) -> str:
+    """Such as "world course, started 3 min ago"."""
+    try:
+        running = rosgraph.Master(name, master_uri).getParam(name + names.RUNNING.replace("~", "/"))
+        age = max(0, int(time.time() - running["since"]))
+        world = running["world"]
+    except (rosgraph.MasterException, KeyError, TypeError):  # real Gazebo, or a deleted parameter
+        return name
+    size, unit = next(one for one in UNITS if age >= one[0] or one[0] == 1)
+    return f"world {world}, started {age // size} {unit} ago"
