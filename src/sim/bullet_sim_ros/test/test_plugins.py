@@ -45,13 +45,27 @@ def test_values_are_trimmed_and_typed():
 
 
 def test_a_bad_flag_warns_and_a_bad_number_is_an_error(caplog):
-    p = parameters("<f>maybe</f><n>fast</n><v>1 2</v>")
+    p = parameters("<f>maybe</f><n>fast</n><v>a b c</v>")
     with caplog.at_level(logging.WARNING):
         assert p.flag("f", True) is True
     assert "<f> is 'maybe', neither true nor false" in caplog.text
     for read in (lambda: p.number("n", 0.0), lambda: p.vector("v"), lambda: p.required("x")):
         with pytest.raises(PluginError, match=r"<[nvx]>"):
             read()
+
+
+def test_the_first_numbers_count_whatever_was_meant(caplog):
+    p = parameters("<n>0 1 2</n><few>1 2</few><many>1 2 3 4</many><cut>1 2m 3</cut><one>5</one>")
+    assert p.number("n", 9.0) == p.number("n", 9.0) == 0.0
+    assert p.vector("few") == p.vector("cut") == (1.0, 2.0, 0.0)
+    assert p.vector("many") == (1.0, 2.0, 3.0)
+    assert p.numbers("few", (0, 0, 0), one_for_all=True) == (1.0, 1.0, 1.0)
+    assert p.numbers("one", (0, 0, 0), one_for_all=True) == (5.0, 5.0, 5.0)
+    assert [line.partition("plugin p: ")[2] for line in caplog.messages] == [
+        "<n> is '0 1 2'; 0 is used, as Gazebo reads it",
+        "<few> is '1 2'; 1 2 0 is used, as Gazebo reads it",
+        "<cut> is '1 2m 3'; 1 2 0 is used, as Gazebo reads it",
+        "<many> is '1 2 3 4'; 1 2 3 is used, as Gazebo reads it"]
 
 
 @pytest.mark.parametrize("body, found", [

@@ -37,7 +37,7 @@ def test_a_number_that_is_none(bench, caplog, plugin, tag, more):
 
 def test_a_vector_that_is_none(bench, caplog):
     # conforms: libgazebo_ros_p3d.so/xyzOffset
-    for word in ("nan 0 0", "inf 0 0", "1_0 0 0", "0 0", "1 2m 3", "a b c"):
+    for word in ("nan 0 0", "inf 0 0", "a b c"):
         caplog.clear()
         bench.spawn(robot("libgazebo_ros_p3d.so", "<bodyName>a</bodyName><topicName>t</topicName>"
                           f"<xyzOffset>{word}</xyzOffset>"))
@@ -54,7 +54,7 @@ def test_more_than_a_number_is_read_as_far_as_it_goes(bench, caplog, text, used)
                       f"<bodyName>a</bodyName><inclination>{text}</inclination>"))
     said = [record.message for record in caplog.records if record.levelname in ("WARNING", "ERROR")]
     assert said == [f"model bot: plugin p: <inclination> is {text.strip()!r}; {used:g} is used, as "
-                    "Gazebo reads it, and what follows is not"]
+                    "Gazebo reads it"]
     assert "/magnetic" in bench.advertised()
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import logging
 import math
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from xml.etree.ElementTree import Element
 
 from bullet_sim.description import PluginDescription
 from bullet_sim_ros.errors import PluginError
@@ -18,7 +20,7 @@ NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.IGNORECASE)
 WORDS = ("inf", "nan", "infinity")  # unknown to a C++ stream, but written by xacro and Python
 
 
-def read_numbers(text: str, count: int | None = None) -> tuple[list[float], bool]:
+def _read_numbers(text: str, count: int) -> tuple[list[float], bool]:
     """The numbers at the beginning of a text, `count` at most, and whether they are all of it.
 
     Reading ends at the first word that is not a number.
@@ -42,7 +44,10 @@ def read_numbers(text: str, count: int | None = None) -> tuple[list[float], bool
 class PluginParameters:
     """Typed access to the children of one `<plugin>` element."""
 
-    def __init__(self, model: str, description: PluginDescription):
+    def __init__(self, model: str, description: PluginDescription, path: tuple[str, ...] = ()):
+        """`path`: the tags around those of a group."""
+        self._path = path
+        self._warned: set[str] = set()  # tags
         self._model = model
         self._description = description
         self._plugin = description.name
@@ -65,10 +70,13 @@ class PluginParameters:
         """The elements of that name, each as its own PluginParameters."""
         self.read.add(tag)
         if tag not in self._groups:
-            self._groups[tag] = [
-                PluginParameters(self._model, replace(self._description, element=element))
-                for element in self._element.findall(tag)]
+            self._groups[tag] = [self.inside(found, tag) for found in self._element.findall(tag)]
         return self._groups[tag]
+
+    def inside(self, element: Element, *path: str) -> PluginParameters:
+        """The children of an element that stands inside; `path` are the tags down to it."""
+        return PluginParameters(self._model, replace(self._description, element=element),
+                                (*self._path, *path))
 
     def texts(self, tag: str) -> list[str]:
         """Trimmed texts of all such tags."""
@@ -90,31 +98,34 @@ class PluginParameters:
         """Trimmed text of a tag; PluginError if it is absent or empty."""
         found = self.text(tag)
         if not found:
-            raise PluginError(f"it needs a <{tag}>")
+            raise PluginError(f"it needs a {self._shown(tag)}")
         return found
 
     def number(self, tag: str, default: float) -> float:
         """A finite number; PluginError if it is not finite."""
         value = self.bound(tag, default)
         if self.text(tag) and math.isinf(value):
-            raise PluginError(f"<{tag}> is {self.text(tag)!r}, which is not finite")
+            raise PluginError(f"{self._shown(tag)} is {self.text(tag)!r}, which is not finite")
         return value
 
     def bound(self, tag: str, default: float) -> float:
         """A number that may be infinite (no bound). PluginError if it is not a number."""
-        text = self.text(tag)
-        if not text:
-            return default
-        values = self._leading(tag, text, 1)
-        if not values or math.isnan(values[0]):
-            raise PluginError(f"<{tag}> is {text!r}, which is not a number")
-        return values[0]
+        return self._numbers(tag, (default,), "a number", lambda value: not math.isnan(value))[0]
+
+    def numbers(self, tag: str, default: Sequence[float], one_for_all: bool = False
+                ) -> tuple[float, ...]:
+        """As many finite numbers as the default has; PluginError if they are none.
+
+        Of too few, with `one_for_all` the first number counts for all, else the others are 0.
+        """
+        wanted = {1: "a finite number", 3: "three finite numbers"}[len(default)]
+        return self._numbers(tag, default, wanted, math.isfinite, one_for_all)
 
     def deviation(self, tag: str) -> float:
         """A standard deviation; 0 if absent, PluginError if it is negative or not a number."""
         value = self.number(tag, 0.0)
         if value < 0:
-            raise PluginError(f"<{tag}> is {value}, and a deviation is not negative")
+            raise PluginError(f"{self._shown(tag)} is {value}, and a deviation is not negative")
         return value
 
     def topic(self, default: str, tag: str = "topicName") -> str:
@@ -130,28 +141,41 @@ class PluginParameters:
                 self._warn_of_rest(tag, text, word)
             return word in TRUE
         if text:
-            log.warning("model %s: plugin %s: <%s> is %r, neither true nor false; %s is used",
-                        self._model, self._plugin, tag, text, str(default).lower())
+            log.warning("model %s: plugin %s: %s is %r, neither true nor false; %s is used",
+                        self._model, self._plugin, self._shown(tag), text, str(default).lower())
         return default
 
     def vector(self, tag: str) -> tuple[float, float, float]:
-        """Three numbers; zeros if absent, PluginError if they are not three finite ones."""
-        text = self.text(tag, "0 0 0")
-        values = self._leading(tag, text, 3)
-        if len(values) != 3 or not all(map(math.isfinite, values)):
-            raise PluginError(f"<{tag}> is {text!r}, which is not three finite numbers")
-        return (values[0], values[1], values[2])
+        """Three numbers; zeros if absent, PluginError if they are not finite."""
+        x, y, z = self.numbers(tag, (0.0, 0.0, 0.0))
+        return (x, y, z)
 
-    def _leading(self, tag: str, text: str, count: int) -> list[float]:
-        """The first `count` numbers; a warning if anything follows them."""
-        values, whole = read_numbers(text, count)
-        if len(values) == count and not whole:
+    def _numbers(self, tag: str, default: Sequence[float], wanted: str,
+                 possible: Callable[[float], bool], one_for_all: bool = False
+                 ) -> tuple[float, ...]:
+        """Numbers by Gazebo's rule: those that can be read count; a warning for any other text."""
+        text = self.text(tag)
+        if not text:
+            return tuple(default)
+        count = len(default)
+        values, whole = _read_numbers(text, count)
+        if not values or not all(map(possible, values)):
+            raise PluginError(f"{self._shown(tag)} is {text!r}, which is not {wanted}")
+        as_meant = whole and (len(values) == count or (one_for_all and len(values) == 1))
+        if len(values) < count:
+            values = values[:1] * count if one_for_all else values + [0.0] * (count - len(values))
+        if not as_meant:
             self._warn_of_rest(tag, text, " ".join(f"{value:g}" for value in values))
-        return values
+        return tuple(values)
 
     def _warn_of_rest(self, tag: str, text: str, used: str) -> None:
-        log.warning("model %s: plugin %s: <%s> is %r; %s is used, as Gazebo reads it, and what "
-                    "follows is not", self._model, self._plugin, tag, text, used)
+        if tag not in self._warned:
+            self._warned.add(tag)
+            log.warning("model %s: plugin %s: %s is %r; %s is used, as Gazebo reads it",
+                        self._model, self._plugin, self._shown(tag), text, used)
+
+    def _shown(self, tag: str) -> str:
+        return "".join(f"<{name}>" for name in (*self._path, tag))
 
     def namespace(self, missing: str, empty: str) -> str:
         """`robotNamespace`; what an absent or an empty one means differs between plugins."""

@@ -1,7 +1,6 @@
 """libgazebo_ros_harness.so: a model hangs on a winch until it is detached."""
 
 import logging
-import math
 from collections.abc import Callable
 from xml.etree.ElementTree import Element
 
@@ -11,7 +10,8 @@ from bullet_sim.mechanisms.harness import Harness
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, plugin
-from bullet_sim_ros.plugin_host.plugin_tags import read_numbers
+
+UPWARDS = (0.0, 0.0, 1.0)
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -49,13 +49,11 @@ class HarnessPlugin:
                     first or "the first joint")
         return joints[first]
 
-    @staticmethod
-    def _axis(joint: Element) -> tuple[float, float, float]:
-        text = joint.findtext("axis/xyz") or "0 0 1"
-        values, _ = read_numbers(text, 3)
-        if len(values) != 3 or not all(map(math.isfinite, values)):
-            raise PluginError(f"<axis><xyz> is {text!r}, which is not three finite numbers")
-        return (values[0], values[1], values[2])
+    def _axis(self, joint: Element) -> tuple[float, ...]:
+        axis = joint.find("axis")
+        if axis is None:
+            return UPWARDS
+        return self._context.parameters.inside(axis, "axis").numbers("xyz", UPWARDS)
 
     def _take_speed(self, msg: Float32) -> Callable[[], None] | None:
         if not abs(msg.data) <= convert.LARGEST:

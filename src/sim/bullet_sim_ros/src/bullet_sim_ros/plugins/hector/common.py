@@ -10,7 +10,7 @@ from bullet_sim.sensors.error_model import ErrorModel, ErrorParameters
 from bullet_sim_ros import names
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, no_tf_prefix
-from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters, read_numbers
+from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
 TAGS = {"offset": "offset", "drift": "drift", "drift_frequency": "driftFrequency",
@@ -117,7 +117,7 @@ def with_noise(errors: ErrorParameters, noise: float) -> ErrorParameters:
 def read_errors(p: PluginParameters, size: int, prefixes: tuple[str, ...]) -> ErrorParameters:
     """Read `accelOffset` and so on for the prefix `accel`, `offset` and so on for an empty one.
 
-    PluginError if a tag has the wrong number of numbers, or a negative one where none can be.
+    PluginError if a tag has no number, or a negative one where none can be.
     """
     values = vars(ErrorParameters.none(size))
     for prefix in prefixes:
@@ -129,14 +129,7 @@ def read_errors(p: PluginParameters, size: int, prefixes: tuple[str, ...]) -> Er
 
 def _components(p: PluginParameters, tag: str, default: tuple[float, ...]) -> tuple[float, ...]:
     """As many numbers as there are components, or one for all of them."""
-    words = p.text(tag).split()
-    if not words:
-        return default
-    values = tuple(read_numbers(p.text(tag))[0])
-    if len(values) == 1:
-        values *= len(default)
-    if len(values) != len(default) or not all(map(math.isfinite, values)):
-        raise PluginError(f"<{tag}> is {p.text(tag)!r}, neither one number nor {len(default)}")
+    values = p.numbers(tag, default, one_for_all=True)
     if not tag.lower().endswith("offset") and min(values) < 0:
         raise PluginError(f"<{tag}> is {p.text(tag)!r}, and that cannot be negative")
     return values
