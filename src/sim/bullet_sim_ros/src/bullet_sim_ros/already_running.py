@@ -17,7 +17,7 @@ from urllib.parse import urlsplit
 from xml.parsers.expat import ExpatError
 
 import rosgraph
-import rosgraph.names
+import rospy
 
 ANSWER_TIME = 2.0  # s, wall, for a connection and for an answer
 TURN_TIME = 15.0  # s, wall; a registration takes 0.1 s
@@ -30,6 +30,12 @@ class Sign(Enum):
     GONE = "not registered, or registered by a process that has ended"
     HANGS = "takes a connection, and does not answer"
     ANSWERS = "runs"
+
+
+def full_name(default: str) -> str:
+    """The name that rospy.init_node(default) will register, before it does so."""
+    name = rospy.names.get_mappings().get("__name", default)
+    return rosgraph.names.resolve_name(name, rospy.get_name())
 
 
 def sign_of_life(master_uri: str, name: str) -> Sign:

@@ -11,7 +11,7 @@ import rosgraph
 import rospy
 
 from bullet_sim_ros import names
-from bullet_sim_ros.already_running import Sign, registering, sign_of_life
+from bullet_sim_ros.already_running import Sign, full_name, registering, sign_of_life
 
 DEFAULT_NAME = "gazebo"
 RUNS_ALREADY = ("A simulator runs already on this master (%s). End it with Ctrl-C in its terminal, "
@@ -37,9 +37,7 @@ def register(world: str) -> bool:
 
     OSError if the master ends meanwhile.
     """
-    name = rosgraph.names.resolve_name(
-        rospy.names.get_mappings().get("__name", DEFAULT_NAME), rospy.get_name())
-    uri = rosgraph.get_master_uri()
+    name, uri = full_name(DEFAULT_NAME), rosgraph.get_master_uri()
     with registering(uri, name):
         refused = refusal(uri, name)
         if refused:

@@ -6,25 +6,36 @@ import sys
 import webbrowser
 from dataclasses import replace
 
+import rosgraph
 import rospy
 from rosgraph.network import get_local_addresses
 
+from bullet_sim_ros.already_running import full_name, registering
 from sim_viewer import registry
 from sim_viewer.context import Node
 from sim_viewer.memory import give_back_large_blocks
 from sim_viewer.meshes import Meshes
 from sim_viewer.options import OptionError, read_options
 from sim_viewer.restart import restart, wait_for_other_master
+from sim_viewer.running_page import RUNS_ALREADY, running_page, why_another_port
 from sim_viewer.rviz.config import ConfigError, read_config
 from sim_viewer.server import NoPort, Server, further_urls, page_url
 
 
 def main(name: str = "sim_viewer", rviz: str = "") -> None:
-    """Run until Ctrl-C, or until ROS ends the node of this name. `rviz`: a .rviz file."""
+    """Run until Ctrl-C, or until ROS ends the node of this name. `rviz`: a .rviz file.
+
+    If a page of this master runs already, say where, and exit with 1 if it lacks what is asked for.
+    """
     give_back_large_blocks()
     try:
-        # The loop handles the signals; roslaunch and Ctrl-C end this node with SIGINT.
-        rospy.init_node(name, disable_signals=True)
+        with registering(rosgraph.get_master_uri(), full_name(name)):
+            said = running_page(name, rviz)
+            if said:
+                print(said[0] % said[1:], flush=True)
+                sys.exit(0 if said[0] == RUNS_ALREADY else 1)
+            # The loop handles the signals; roslaunch and Ctrl-C end this node with SIGINT.
+            rospy.init_node(name, disable_signals=True)
         registry.load_all()
         asyncio.run(_serve(rviz))
     except (OptionError, ConfigError, NoPort) as error:
@@ -69,7 +80,7 @@ async def _announce(node: Node, port: int) -> None:
     """Print the page's address, set it as the parameter `~url`, and open it if that is wanted."""
     tab = "#rviz" if node.options.rviz else ""
     if port != node.options.port:
-        print(f"viewer: port {node.options.port} is taken, so it is {port}")
+        print(await node.run_in_thread(why_another_port, node.options, port))
     url = page_url(node.options, port) + tab
     print(f"viewer: {url}", flush=True)
     for further in further_urls(node.options, port, get_local_addresses()):

@@ -11,6 +11,7 @@ import rospkg
 from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
+from sim_viewer import about
 from sim_viewer.access import Access
 from sim_viewer.context import Node
 from sim_viewer.hub import Hub
@@ -37,6 +38,7 @@ class Server:
         for path, handler in routes.items():
             app.router.add_get(path, handler)
         app.router.add_get("/", self._index)
+        app.router.add_get(about.PATH, self._about)
         app.router.add_static("/", self._folder)
         self._runner = web.AppRunner(app, access_log=None, logger=_logger(), shutdown_timeout=1.0)
 
@@ -60,6 +62,9 @@ class Server:
         await self._hub.close()
         await self._runner.cleanup()
 
+    async def _about(self, request: web.Request) -> web.Response:
+        return web.json_response(about.facts(self._options))
+
     async def _index(self, request: web.Request) -> web.FileResponse:
         return web.FileResponse(self._folder / "index.html")
 
@@ -77,7 +82,12 @@ def _is_fault_of_server(record: logging.LogRecord) -> bool:
 
 def page_url(options: Options, port: int) -> str:
     """The page's address for a browser on this machine."""
-    return _url(options, "127.0.0.1" if options.address in EVERYWHERE else options.address, port)
+    return _url(options, local_host(options.address), port)
+
+
+def local_host(address: str) -> str:
+    """A host by which this machine reaches what listens at this address."""
+    return "127.0.0.1" if address in EVERYWHERE else address
 
 
 def further_urls(options: Options, port: int, addresses: list[str]) -> list[str]:
