@@ -21,6 +21,20 @@ def test_loaded_into_another_namespace():
     assert "parameter /racecar/left/type is not set, but /left/type is: " in line
 
 
+def test_the_namespace_is_in_the_name_once_more():
+    for namespace, name, there in (
+            ("/arm", "arm/j1", "/arm/j1"), ("/arm", "/arm/j1", "/arm/j1"),
+            ("/lab/arm", "arm/j1", "/lab/arm/j1"), ("/lab/arm", "lab/arm/j1", "/lab/arm/j1")):
+        line = diagnosis.not_configured(name, namespace, [f"{there}/type", f"{there}/pid/p"])
+        assert line.startswith(f"{name} is looked for in {namespace}, as {namespace}/")
+        assert line.endswith(": write j1")
+
+
+def test_a_controller_with_a_slash_in_its_name():
+    line = diagnosis.not_configured("lab/arm/j1", "/lab", ["/lab/arm/j1/type"])
+    assert line.endswith(": write arm/j1")
+
+
 def test_a_mistyped_name():
     parameters = ["/left_wheel/type", "/arm/type", "/left_wheel/pid/type"]
     line = diagnosis.not_configured("left_whel", "/", parameters)

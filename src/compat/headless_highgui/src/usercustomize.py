@@ -1,19 +1,28 @@
-"""Python runs this file at its start: it waits for `import cv2` and then gives cv2 its windows."""
+"""Python runs this file at its start: it amends a few modules when a script imports them.
 
+cv2 gets its windows, and some modules the names that they had when a script was written.
+"""
+
+import collections
 import sys
+import time
 from importlib.machinery import PathFinder
 
+AMENDED = {"cv2", "numpy", "yaml", "joint_state_publisher"}
 
-class Cv2Watch:
-    """A finder that lets every import pass; after cv2's it hooks the windows and is gone."""
+
+class Watch:
+    """A finder that lets every import pass; it amends each of those modules after its import."""
+
+    waited_for = set(AMENDED)
 
     @classmethod
     def find_spec(cls, name, _path=None, _target=None):
-        if name != "cv2":
+        if name not in cls.waited_for:
             return None
         from importlib.util import find_spec
 
-        sys.meta_path.remove(cls)  # cv2 imports itself once more while it loads
+        cls.waited_for.remove(name)  # it is looked for once more below, and cv2 imports itself
         spec = find_spec(name)
         if spec is not None and hasattr(spec.loader, "exec_module"):
             load = spec.loader.exec_module
@@ -23,12 +32,44 @@ class Cv2Watch:
     @staticmethod
     def load(load, module):
         load(module)
-        try:
-            from headless_highgui.hook import install
+        for amend in (put_old_names_back, give_windows):
+            try:
+                amend(module)
+            except Exception as error:  # a script that needs none of it must not fail here
+                print(f"headless_highgui: {module.__name__} is not amended: {error}",
+                      file=sys.stderr)
 
-            install(module)
-        except Exception as error:  # a script that never shows a window must not fail here
-            print(f"headless_highgui: no windows without a screen: {error}", file=sys.stderr)
+
+def put_old_names_back(module):
+    from old_names import AMENDED
+
+    AMENDED[module.__name__](module)
+
+
+def give_windows(module):
+    if module.__name__ == "cv2":
+        from headless_highgui.hook import install
+
+        install(module)
+
+
+def watch_standard():
+    """collections and time are imported already: what amends them is, at the first old name."""
+    def first_asked(module):
+        def __getattr__(name):
+            if name.startswith("__"):
+                raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
+            from old_names import amend_standard
+
+            for each in (collections, time):
+                del each.__getattr__
+            amend_standard()
+            return getattr(module, name)
+
+        return __getattr__
+
+    for module in (collections, time):
+        module.__getattr__ = first_asked(module)
 
 
 def run_hidden():
@@ -41,6 +82,7 @@ def run_hidden():
         hidden.loader.exec_module(module_from_spec(hidden))
 
 
-sys.meta_path.insert(0, Cv2Watch)
+sys.meta_path.insert(0, Watch)
+watch_standard()
 if __name__ == "usercustomize":
     run_hidden()

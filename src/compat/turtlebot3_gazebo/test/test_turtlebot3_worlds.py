@@ -31,6 +31,9 @@ STARTS = {  # world: robot, x, y
 }
 SPAWNED = ["traffic_light_red", "traffic_light_yellow", "traffic_light_green", "traffic_bar_up",
            "traffic_bar_down", "traffic_left", "traffic_right", "turtlebot3_burger"]
+PUT_IN = {"turtlebot3_square/goal_box": "goal_box", "turtlebot3_goalbox": "turtlebot3_goalbox",
+          "turtlebot3_obstacle": "turtlebot3_obstacle", "turtlebot3_autorace/ground": "ground",
+          "turtlebot3_autorace/tunnel_obstacles": "tunnel_obstacles"}  # folder: model
 LOADED_WITHIN = 2.0  # s of a processor
 
 
@@ -59,6 +62,15 @@ def test_what_is_shipped_is_what_is_made():
                and "turtlebot3_autorace/course" not in str(path)}  # learning_topic's test has it
     assert shipped.keys() == FILES.keys()
     assert [path for path in FILES if shipped[path] != FILES[path]] == []
+
+
+@pytest.mark.parametrize("folder", PUT_IN)
+def test_what_scripts_spawn_into_the_arenas(folder, resources):
+    """By upstream's path, as the learning robots' scripts read it."""
+    text = (PACKAGE / "models" / folder / "model.sdf").read_text(encoding="utf-8")
+    model = load_model(text, resources)
+    assert model.name == PUT_IN[folder]
+    assert bool(model.links[0].collisions) is ("goal" not in folder)  # one drives over a goal
 
 
 @pytest.mark.parametrize("name", STARTS)

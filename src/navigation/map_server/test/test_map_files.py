@@ -1,6 +1,7 @@
 """Map files: what every pixel becomes, what is written, and what is said of each mistake."""
 
 import time
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -230,6 +231,23 @@ def test_where_nothing_can_be_written(tmp_path):
                        (tmp_path / "taken", "is a folder"), (tmp_path / "a\nb", "is not a name")):
         with pytest.raises(MapFileError, match=said):
             write_map(name, grid_of([[0]]))
+
+
+@pytest.mark.parametrize("typed, written", [
+    ("~/maps/home", "~ is not expanded here: write /home/ann/maps/home"),
+    ("~", "~ is not expanded here: write /home/ann"),
+    ("$HOME/m", r"$HOME is not expanded here: write /home/ann/m"),
+    ("${HOME}/m", r"${HOME} is not expanded here: write /home/ann/m"),
+    ("$NO_SUCH/m", "$NO_SUCH is not expanded here: write the path itself"),
+    ("$(find my_car)/maps/m", '$(find my_car) is expanded in launch files only: write '
+                              '"$(rospack find my_car)/maps/m"'),
+    ("$(env HOME)/m", "$(env HOME) is not expanded here: write the path itself")])
+def test_a_name_that_no_shell_has_expanded(monkeypatch, typed, written):
+    monkeypatch.setenv("HOME", "/home/ann")
+    for attempt in (map_files.check_target, read_map):
+        with pytest.raises(MapFileError) as caught:
+            attempt(Path(typed))
+        assert str(caught.value) == written
 
 
 def test_a_full_disk_leaves_what_was_there(tmp_path, monkeypatch):

@@ -167,6 +167,17 @@ class Story(unittest.TestCase):
         self.assertEqual(poses[-1].pose.position.x, 2.0)
         self.assertGreater(len(poses), 10)
 
+    def test_make_plan_in_a_frame_that_nobody_knows(self):
+        """An empty plan, as upstream, and a line that names the frame."""
+        make_plan = rospy.ServiceProxy("move_base/make_plan", GetPlan)
+        for wrong in ("start", "goal"):
+            poses = {"start": goal_at(START).target_pose, "goal": goal_at(FAR).target_pose}
+            poses[wrong].header.frame_id = "nowhere"
+            self.assertEqual(make_plan(poses["start"], poses["goal"], 0.0).plan.poses, [])
+            wait_until(lambda wrong=wrong: [
+                line for line in self.lines if f"the {wrong} is in frame 'nowhere'" in line],
+                f"a line about the {wrong}")
+
     def test_clear_costmaps(self):
         """Answers, and a drive goes on after it."""
         rospy.ServiceProxy("move_base/clear_costmaps", Empty)()

@@ -24,12 +24,23 @@ def _configured(namespace: str, parameters: Collection[str]) -> list[str]:
                   if name.endswith("/type") and name.count("/") == 1)
 
 
+def _below(namespace: str, name: str, parameters: Collection[str]) -> str:
+    """The controller's name without the part that the namespace says already; "" if none is."""
+    parts = name.strip("/").split("/")
+    ends = ["/".join(parts[first:]) for first in range(0 if name.startswith("/") else 1,
+                                                       len(parts))]
+    return next((end for end in ends if f"{_join(namespace, end)}/type" in parameters), "")
+
+
 def _listing(names: Collection[str]) -> str:
     return ", ".join(names) or "none"
 
 
 def not_configured(name: str, namespace: str, parameters: Collection[str]) -> str:
     """Why a controller has no type; `parameters` are the names of all that are set."""
+    if short := _below(namespace, name, parameters):
+        return (f"{name} is looked for in {namespace}, as {_join(namespace, name.lstrip('/'))}: "
+                f"write {short}")
     wanted = f"{_join(namespace, name)}/type"
     inner = _configured(_join(namespace, name), parameters)
     if inner:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from map_server.errors import MapFileError
+from map_server.files import unexpanded
 from map_server.image import MapImage, read_image
 from map_server.metadata import MapMetadata, read_metadata
 from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
@@ -64,6 +65,8 @@ def _upright(cells: np.ndarray) -> np.ndarray:
 def check_target(name: Path) -> None:
     """Raises MapFileError with one line if NAME.pgm and NAME.yaml cannot be written."""
     folder = name.parent
+    if advice := unexpanded(str(name)):
+        raise MapFileError(advice)
     if not folder.is_dir():
         raise MapFileError(f"{folder}: there is no such folder; make it first: mkdir -p {folder}")
     if not name.name.isprintable() or not name.name:

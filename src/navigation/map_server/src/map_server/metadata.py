@@ -13,7 +13,7 @@ from typing import Any
 import yaml
 
 from map_server.errors import MapMetadataError, MapMissingError
-from map_server.files import read_file
+from map_server.files import read_file, unexpanded
 
 MODES = ("trinary", "scale", "raw")
 LARGEST = 1 << 20  # bytes; a description has a few hundred
@@ -83,6 +83,8 @@ def _load(path: Path) -> dict[str, Any]:
     try:
         content = read_file(path, LARGEST)
     except (FileNotFoundError, NotADirectoryError):
+        if advice := unexpanded(str(path)):
+            raise MapMissingError(advice) from None
         meant = path.with_suffix(".yaml")
         advice = meant if os.path.isfile(meant) else "the path of a map's YAML file"
         raise MapMissingError(f"{path}: there is no such file; write {advice}") from None

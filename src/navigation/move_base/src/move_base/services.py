@@ -54,24 +54,28 @@ class Services:
         self._known = [*self._known, *([] if pose is None else [pose])]
         return EmptyResponse()
 
-    def _make_plan(self, request: GetPlanRequest) -> GetPlanResponse | None:
-        """An empty plan if there is no path, as upstream; the call fails if it cannot plan."""
+    def _make_plan(self, request: GetPlanRequest) -> GetPlanResponse:
+        """An empty plan if there is no path, or if a pose is in a frame that nobody knows.
+
+        As upstream the call fails where move_base is not ready to plan: rospy.ServiceException.
+        """
         costmap = self._costmaps[0]
         if self._is_active():
-            return _refused("move_base must be in an inactive state to make a plan for an "
-                            "external user")
+            raise _refusal("move_base must be in an inactive state to make a plan for an external "
+                           "user")
         if not costmap.is_ready():
-            return _refused("move_base cannot make a plan for you because it doesn't have a "
-                            "costmap")
+            raise _refusal("move_base cannot make a plan for you because it doesn't have a costmap")
         robot = costmap.robot_pose()
-        start = robot if not request.start.header.frame_id else self._placed(request.start)
-        if start is None:
-            return _refused("move_base cannot make a plan for you because it could not get the "
-                            "start pose of the robot")
+        if robot is None and not request.start.header.frame_id:
+            raise _refusal("move_base cannot make a plan for you because it could not get the "
+                           "start pose of the robot")
+        start = self._placed(request.start) if request.start.header.frame_id else robot
         goal = self._placed(request.goal)
-        if goal is None:
-            return _refused("move_base cannot make a plan for you because it does not know where "
-                            f"the goal is, in frame {request.goal.header.frame_id!r}")
+        for which, pose, found in (("start", request.start, start), ("goal", request.goal, goal)):
+            if found is None:
+                rospy.logerr("make_plan: the %s is in frame %r, which cannot be transformed to %s: "
+                             "the plan is empty", which, pose.header.frame_id, costmap.global_frame)
+                return GetPlanResponse()
         snapshot = self.costmap_to_plan_on()
         if self._values()["make_plan_clear_costmap"] and robot is not None:
             snapshot.cells[square(snapshot, robot, self._clearing_radius)] = FREE
@@ -131,5 +135,7 @@ def _is_open(costmap: Costmap, pose: np.ndarray) -> bool:
     return cost < INSCRIBED or cost == UNKNOWN
 
 
-def _refused(why: str) -> None:
+def _refusal(why: str) -> rospy.ServiceException:
+    """Logged here, and sent to the caller."""
     rospy.logerr("%s", why)
+    return rospy.ServiceException(why)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from turtlebot3_gazebo.making import sdf
+from turtlebot3_gazebo.making.arenas import columns
 from turtlebot3_gazebo.making.sdf import WHITE, Part, cylinder
 
 PHYSICS = """  <physics type="ode">
@@ -31,9 +32,6 @@ STAGE_SCENE = """  <scene>
     <shadows>0</shadows>
   </scene>"""
 UNSHADED = "  <scene><shadows>0</shadows></scene>"
-CORNERS = ((0.6, 0.6), (0.6, -0.6), (-0.6, 0.6), (-0.6, -0.6))  # m, of stages 2 and 3
-CORNER_INERTIAL = ("<inertial><pose>0 0 0.25 0 0 0</pose><mass>20</mass><inertia><ixx>8</ixx>"
-                   "<iyy>8</iyy><izz>15</izz></inertia></inertial>")  # four columns, as one body
 
 
 def include(uri: str, place: sdf.Numbers = sdf.ORIGIN) -> str:
@@ -44,14 +42,6 @@ def world(*parts: str) -> bytes:
     """A world file; each part is one or more elements."""
     body = "\n".join(["<world name=\"default\">", *parts, PHYSICS, "</world>"])
     return sdf.document(body).encode()
-
-
-def columns(static: int) -> str:
-    """The model `obstacle`: four columns in one link."""
-    parts = [Part(f"column_{i}", cylinder(0.15, 0.5), (x, y, 0.25), WHITE)
-             for i, (x, y) in enumerate(CORNERS, 1)]
-    mass = "" if static else CORNER_INERTIAL
-    return sdf.model("obstacle", [sdf.link("link", parts, mass=mass)], static=static)
 
 
 def pillar(name: str, x: float, y: float) -> str:
@@ -68,8 +58,8 @@ def worlds() -> dict[str, bytes]:
         "turtlebot3_world": world(UNSHADED, *ground, include("turtlebot3_world")),
         "turtlebot3_house": world(UNSHADED, *ground, include("turtlebot3_house")),
         "turtlebot3_stage_1": world(STAGE_SCENE, *ground, square),
-        "turtlebot3_stage_2": world(STAGE_SCENE, *ground, square, columns(static=1)),
-        "turtlebot3_stage_3": world(STAGE_SCENE, *ground, square, columns(static=0)),
+        "turtlebot3_stage_2": world(STAGE_SCENE, *ground, square, columns("obstacle", static=1)),
+        "turtlebot3_stage_3": world(STAGE_SCENE, *ground, square, columns("obstacle", static=0)),
         "turtlebot3_stage_4": world(STAGE_SCENE, *ground, plaza, pillar("obstacle_1", 2.0, 2.0),
                                     pillar("obstacle_2", -2.0, -2.0)),
     }
