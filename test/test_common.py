@@ -82,6 +82,29 @@ def test_a_file_that_root_left_behind_stops_no_build(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
+def test_a_program_in_cpp_that_is_not_built_says_how(tmp_path: Path) -> None:
+    for file in ("src/lessons/wiki/talker/talker.cpp", "src/lessons/wiki/src/library.cpp",
+                 "src/lessons/lesson/src/client.cpp", "src/lessons/ignored/src/node.cpp",
+                 "src/learning_topic/src/built.cpp"):
+        (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / file).write_text("" if "library" in file else "int main() {}\n")
+    for package in ("wiki", "lesson", "learning_topic"):
+        (tmp_path / "devel/share" / package).mkdir(parents=True)
+    (tmp_path / "devel/lib/learning_topic").mkdir(parents=True)
+    (tmp_path / "devel/lib/learning_topic/built").write_text("a program")
+    subprocess.run(["bash", "-c", ". scripts/common.sh; . scripts/setup/workspace.sh;"
+                    f" root={tmp_path}; cpp_stand_ins; cpp_stand_ins"], cwd=ROOT, check=True)
+    made = {str(path.relative_to(tmp_path / "devel/lib"))
+            for path in (tmp_path / "devel/lib").rglob("*") if path.is_file()}
+    assert made == {"wiki/talker", "lesson/client", "learning_topic/built"}
+    assert (tmp_path / "devel/lib/learning_topic/built").read_text() == "a program"
+    done = subprocess.run([tmp_path / "devel/lib/wiki/talker"], text=True, capture_output=True,
+                          check=False)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == ("wiki talker is in C++ and not built yet; type: "
+                           f"make -C {tmp_path} build CPP=1\n")
+
+
 @pytest.mark.parametrize(("retries", "said"), [
     (range(4, -1, -1), "setup: no network: pip cannot reach its package index"),
     (range(4, 3, -1), "setup: pip install failed: ERROR: No matching distribution"),

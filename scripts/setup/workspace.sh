@@ -31,12 +31,25 @@ build_workspace() {
     "-DCPP_LESSONS:BOOL=$cpp" ||
     fail_with_cause "catkin_make failed"
   grep -a ' is left out: ' "$state/build.log" || true
+  [ "$cpp" = ON ] || cpp_stand_ins
   if [ -d src/navigation/nav_algorithms ] && [ ! -e src/navigation/CATKIN_IGNORE ]; then
     PYTHONPATH=src/navigation/nav_algorithms/src logged compile "$venv/bin/python3" -m nav_algorithms.warm_up ||
       fail_with_log "compiling the inner loops of navigation failed" compile
   fi
   mv "$state/build-inputs.now" "$state/build-inputs"
   rm -f "$state/build-unfinished"
+}
+# What rosrun finds where the lessons' C++ programs are not built: a line that says how to build them.
+cpp_stand_ins() {
+  local file package program
+  for file in "$root"/src/learning_topic/src/*.cpp "$root"/src/lessons/*/*/*.cpp; do
+    package=$(basename "$(dirname "$(dirname "$file")")") program=$(basename "$file" .cpp)
+    if [ ! -d "$root/devel/share/$package" ] || [ -e "$root/devel/lib/$package/$program" ] || ! grep -q 'int main(' "$file"; then continue; fi
+    mkdir -p "$root/devel/lib/$package"
+    printf '#!/bin/sh\necho "%s %s is in C++ and not built yet; type: make -C %s build CPP=1" >&2\nexit 1\n' \
+      "$package" "$program" "$root" >"$root/devel/lib/$package/$program"
+    chmod +x "$root/devel/lib/$package/$program"
+  done
 }
 same_packages() {
   [ -f "$state/build-inputs" ] && diff -q <(packages_in "$state/build-inputs") <(packages_in "$state/build-inputs.now") >/dev/null

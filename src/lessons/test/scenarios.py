@@ -16,7 +16,7 @@ ELSEWHERE = SCENARIOS.pop("tested elsewhere")
 # Packages whose scenarios start the simulator: tested in a file of their own, beside the others.
 SIMULATED = {"ai_robot_tracking", "lane_keeping", "learning_autorace", "learning_laser", "nav_demo",
              "urdf02_gazebo"}
-PROGRAM = re.compile(r"\brosrun (learning_\w+) (\w+)\.py")
+PROGRAM = re.compile(r"\brosrun (learning_\w+|actionlib_tutorials) (\w+)\.py")
 LAUNCHED = re.compile(r"\broslaunch (learning_\w+) (\w+\.launch)")
 
 _spec = importlib.util.spec_from_file_location("terminals", HERE / "terminals.py")

@@ -110,6 +110,52 @@ def test_files_that_cannot_be_used(tmp_path, content, said):
     assert isinstance(caught.value, model_source.NoSuchFileError) == ("specified" in said)
 
 
+@pytest.mark.parametrize("declaration", ["", '<?xml version="1.0" encoding="gb2312"?>\n',
+                                         '<?xml version="1.0" encoding="utf-8"?>\n'])
+def test_a_file_in_a_chinese_encoding(tmp_path, declaration):
+    path = tmp_path / "car.urdf"
+    path.write_bytes(f'{declaration}<robot name="car">\n<!-- 小车 -->\n</robot>'.encode("gb2312"))
+    with pytest.raises(model_source.SourceError) as caught:
+        load("-file", str(path))
+    line = 3 if declaration else 2
+    assert str(caught.value) == (f"Invalid XML: file {path}, line {line}: not UTF-8; save it as "
+                                 "UTF-8")
+
+
+def test_text_in_a_chinese_encoding(monkeypatch):
+    raw = io.BytesIO("<robot><!-- 小车 --></robot>".encode("gb2312"))
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(raw, encoding="utf-8"))
+    with pytest.raises(model_source.SourceError, match="stdin: not UTF-8; save the file as UTF-8"):
+        load("-stdin")
+
+
+XACRO = ('<robot name="car"{}><xacro:property name="w" value="0.1"/>'
+         '<link name="base"><box size="${{w}} 1 1"/></link></robot>')
+DECLARED = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
+
+
+@pytest.mark.parametrize("declared", [DECLARED, ""])
+def test_a_xacro_file_that_is_not_processed(tmp_path, monkeypatch, declared):
+    path = tmp_path / "car.urdf.xacro"
+    path.write_text(XACRO.format(declared))
+    with pytest.raises(model_source.SourceError) as caught:
+        load("-file", str(path))
+    assert str(path) in str(caught.value)
+    assert str(caught.value).endswith(
+        f"; run xacro first: rosrun xacro xacro {path} > {tmp_path}/car.urdf")
+    monkeypatch.setattr(rospy, "get_param", lambda name: XACRO.format(declared))
+    with pytest.raises(model_source.SourceError) as caught:
+        load("-param", "robot_description")
+    assert "parameter /robot_description" in str(caught.value)
+    assert str(caught.value).endswith('; run xacro first: <param name="robot_description" '
+                                      'command="$(find xacro)/xacro FILE"/>')
+
+
+def test_what_xacro_has_written_may_still_name_it(monkeypatch):
+    monkeypatch.setattr(rospy, "get_param", lambda name: f'<robot name="car"{DECLARED}/>')
+    assert load("-param", "robot_description").startswith("<robot")
+
+
 def test_standard_input(monkeypatch):
     # conforms: spawn_model/-stdin
     monkeypatch.setattr("sys.stdin", io.StringIO('<robot name="r"/>'))

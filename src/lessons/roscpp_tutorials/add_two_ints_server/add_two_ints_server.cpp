@@ -14,5 +14,6 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "add_two_ints_server");
   ros::NodeHandle node;
   ros::ServiceServer server = node.advertiseService("add_two_ints", add);
+  ROS_INFO("Ready to add two ints.");
   ros::spin();
 }

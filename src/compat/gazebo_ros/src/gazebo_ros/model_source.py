@@ -22,16 +22,61 @@ class NoSuchFileError(SourceError):
 
 def load(options) -> str:
     """The model's XML, parsed and written anew in ASCII as upstream does."""
+    content, place = _read(options), _place(options)
+    if isinstance(content, bytes) and (line := _first_line_that_is_not_utf8(content)):
+        raise SourceError(f"Invalid XML: {place}, line {line}: not UTF-8; save it as UTF-8")
     try:
-        root = ElementTree.fromstring(_read(options))
-    except ElementTree.ParseError as error:
-        raise SourceError(f"Invalid XML: {error}") from None
+        root = ElementTree.fromstring(content)
+    except (ElementTree.ParseError, ValueError, LookupError) as error:
+        xacro = b"xacro:" if isinstance(content, bytes) else "xacro:"
+        advice = f"; {_run_xacro(options)}" if xacro in content else ""
+        raise SourceError(f"Invalid XML: {error} ({place}){advice}") from None
+    if _is_unprocessed(root):
+        raise SourceError(f"Error: {place} has xacro's tags in it, which Gazebo does not read; "
+                          f"{_run_xacro(options)}")
     if options.package_to_model:
         for mesh in root.iter("mesh"):
             name = mesh.get("filename", "")
             if name.startswith("package://"):
                 mesh.set("filename", "model" + name.removeprefix("package"))
     return ElementTree.tostring(root).decode("ascii")
+
+
+def _place(options) -> str:
+    """Where the XML is from, for an error's line."""
+    if options.file is not None:
+        return f"file {options.file}"
+    return "stdin" if options.param is None else f"parameter {rospy.resolve_name(options.param)}"
+
+
+def _first_line_that_is_not_utf8(content: bytes) -> int:
+    """Its number; 0 if there is none, or if the text says UTF-16 by its first bytes."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return 0
+    try:
+        content.decode("utf-8")
+    except UnicodeDecodeError as error:
+        return content.count(b"\n", 0, error.start) + 1
+    return 0
+
+
+def _is_unprocessed(root: ElementTree.Element) -> bool:
+    """Whether xacro has still to be run: its tags and its ${} are there, or macros."""
+    tags = {each.tag.rpartition("}")[2] for each in root.iter()
+            if "xacro" in each.tag.rpartition("}")[0]}
+    values = [value for each in root.iter() for value in each.attrib.values()]
+    return bool(tags & {"macro", "include", "property"}
+                or tags and any("${" in value or "$(" in value for value in values))
+
+
+def _run_xacro(options) -> str:
+    if options.file is not None:
+        written = options.file.removesuffix(".xacro").removesuffix(".urdf") + ".urdf"
+        return f"run xacro first: rosrun xacro xacro {options.file} > {written}"
+    if options.param is not None:
+        return (f'run xacro first: <param name="{options.param}" '
+                'command="$(find xacro)/xacro FILE"/>')
+    return "run xacro first: rosrun xacro xacro FILE | rosrun gazebo_ros spawn_model ..."
 
 
 def _read(options) -> str | bytes:
@@ -45,7 +90,10 @@ def _read(options) -> str | bytes:
         rospy.loginfo("Loading model XML from Gazebo Model Database")
         return DATABASE_WORLD.format(options.database)
     rospy.loginfo("Loading model XML from stdin")
-    return _not_empty(sys.stdin.read(), "Error: stdin buffer was empty")
+    try:
+        return _not_empty(sys.stdin.read(), "Error: stdin buffer was empty")
+    except UnicodeDecodeError:
+        raise SourceError("Invalid XML: stdin: not UTF-8; save the file as UTF-8") from None
 
 
 def _from_file(name: str) -> bytes:

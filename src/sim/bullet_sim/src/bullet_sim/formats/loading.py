@@ -35,6 +35,7 @@ def load_model(text: str, resources: Resources, name: str | None = None) -> Mode
     root = _parse_model(text)
     named = root
     if root.tag == "robot":
+        _refuse_unprocessed(root)
         _put_in_package_folders(root, resources)
     elif root.tag in SDF_ROOTS:
         named = _model_of(root)
@@ -84,6 +85,14 @@ def _parse_model(text: str) -> Element:
         return parse_xml(text, "the text")
     except FormatError as error:
         raise FormatError(f"{NOT_A_MODEL} ({error})") from None
+
+
+def _refuse_unprocessed(root: Element) -> None:
+    """Raises FormatError for a xacro file as it is: its ${} are no numbers, its macros no links."""
+    tags = {each.tag for each in root.iter() if each.tag.startswith("xacro:")}
+    if tags and any("${" in value for each in root.iter() for value in each.attrib.values()):
+        raise FormatError(f"robot '{root.get('name', '')}' has xacro's tags in it, such as "
+                          f"<{min(tags)}>; run xacro first: rosrun xacro xacro FILE")
 
 
 def _put_in_package_folders(root: Element, resources: Resources) -> None:
