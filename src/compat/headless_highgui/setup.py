@@ -6,8 +6,8 @@ from setuptools import setup
 setup(
     **generate_distutils_setup(
         packages=["headless_highgui"],
-        py_modules=["old_names", "usercustomize"],
+        py_modules=["usercustomize"],
         # catkin asks for a module's folder by the module's name, setuptools by "".
-        package_dir={"": "src", "old_names": "src", "usercustomize": "src"},
+        package_dir={"": "src", "usercustomize": "src"},
     )
 )

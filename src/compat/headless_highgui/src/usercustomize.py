@@ -41,7 +41,7 @@ class Watch:
 
 
 def put_old_names_back(module):
-    from old_names import AMENDED
+    from headless_highgui.old_names import AMENDED
 
     AMENDED[module.__name__](module)
 
@@ -59,7 +59,7 @@ def watch_standard():
         def __getattr__(name):
             if name.startswith("__"):
                 raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
-            from old_names import amend_standard
+            from headless_highgui.old_names import amend_standard
 
             for each in (collections, time):
                 del each.__getattr__

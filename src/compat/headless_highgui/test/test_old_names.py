@@ -5,8 +5,8 @@ import sys
 import types
 from pathlib import Path
 
-import old_names
 import pytest
+from headless_highgui import old_names
 
 SOURCE = Path(__file__).resolve().parents[1] / "src"
 IMAGE = "import cv2, numpy as np; image = np.zeros((9, 9), np.uint8); image[2:5, 2:5] = 255\n"

@@ -66,7 +66,7 @@ def _is_unprocessed(root: ElementTree.Element) -> bool:
             if "xacro" in each.tag.rpartition("}")[0]}
     values = [value for each in root.iter() for value in each.attrib.values()]
     return bool(tags & {"macro", "include", "property"}
-                or tags and any("${" in value or "$(" in value for value in values))
+                or (tags and any("${" in value or "$(" in value for value in values)))
 
 
 def _run_xacro(options) -> str:

@@ -1,1 +1,1 @@
-"""OpenCV's windows as image topics, for machines without a screen."""
+"""OpenCV's windows as image topics without a screen, and names that older libraries had."""

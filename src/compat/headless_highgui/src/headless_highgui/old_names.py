@@ -14,7 +14,7 @@ import sys
 import time
 
 log = logging.getLogger(__name__)
-HERE = (__file__, f"{os.path.dirname(__file__)}/usercustomize.py")
+HERE = (__file__, f"{os.path.dirname(os.path.dirname(__file__))}/usercustomize.py")
 LIBRARIES = tuple(f"{prefix}/lib/python3" for prefix in {sys.prefix, sys.base_prefix})
 NUMPY_BUILTINS = {"float": float, "int": int, "bool": bool, "object": object, "str": str,
                   "complex": complex, "long": int, "unicode": str}
