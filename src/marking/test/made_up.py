@@ -60,6 +60,44 @@ def slave_api(method: str) -> str:
                 f"xmlrpc.client.ServerProxy(node).{method}")
 
 
+# Twists of 1 m/s from a socket, as of a publisher that never registers with the master.
+MADE_UP_PUBLISHER = also("""import socket, struct, xmlrpc.client
+from xmlrpc.server import SimpleXMLRPCServer
+def serve():
+    while True:
+        hearer, _ = topic.accept()
+        hearer.recv(4096)
+        fields = ['type=geometry_msgs/Twist', 'md5sum=' + Twist._md5sum, 'callerid=/gazebo']
+        header = b''.join(struct.pack('<I', len(f)) + f.encode() for f in fields)
+        hearer.sendall(struct.pack('<I', len(header)) + header)
+        while True:
+            hearer.sendall(struct.pack('<I6d', 48, 1.0, 0, 0, 0, 0, 0))
+            time.sleep(0.01)
+topic = socket.create_server(('127.0.0.1', 0))
+threading.Thread(target=serve, daemon=True).start()
+slave = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
+slave.register_function(lambda *_: (1, '', ['TCPROS', *topic.getsockname()]), 'requestTopic')
+threading.Thread(target=slave.serve_forever, daemon=True).start()
+node = rospy.get_master().lookupNode('/gazebo')[2]
+me = 'http://127.0.0.1:%d/' % slave.server_address[1]
+xmlrpc.client.ServerProxy(node).publisherUpdate('/master', '/cmd_vel', [me])""")
+# A service's port is asked without a word to the master.
+STRAIGHT_CALL = also("""import rosgraph.network, socket, struct
+uri = rospy.get_master().lookupService('/gazebo/set_logger_level')[2]
+host, _, port = uri.removeprefix('rosrpc://').partition(':')
+call = socket.create_connection((host, int(port)))
+rosgraph.network.write_ros_handshake_header(call, {
+    'service': '/gazebo/set_logger_level', 'md5sum': '*', 'callerid': '/judge'})
+call.recv(4096)
+call.sendall(struct.pack('<3I', 8, 0, 0))
+print(call.recv(4096), flush=True)""")
+# A second node that is gone before anybody could connect to it: clumsy, but allowed.
+BRIEF_PUBLISHER = also("""master = rospy.get_master()
+for _ in range(20):
+    master.target.registerPublisher('/brief', '/cmd_vel', 'geometry_msgs/Twist', 'http://127.0.0.1:9/')
+    master.target.unregisterPublisher('/brief', '/cmd_vel', 'http://127.0.0.1:9/')""")
+
+
 # The lesson with a command in a loop of its own, as on a robot, not in answer to an image.
 _KEEPS, _, _ = LESSON.replace(
     "self.cmd_vel_pub.publish(command)", "self.command = command").replace(
@@ -131,7 +169,24 @@ PROGRAMS: dict[str, tuple[str, str, float, float]] = {
                PUBLISHED + "/camera/rgb/image_raw", 0, 0),
     "parameter": (also("rospy.set_param('/use_sim_time', False)"),
                   "it changed the parameter /use_sim_time", 0, 0),
-    "kills_simulator": (slave_api("shutdown('/x', 'end')"), "it ended the node /gazebo", 0, 0),
+    "kills_simulator": (slave_api("shutdown('/x', 'end')"),
+                        "it asked the node /gazebo to end", 0, 0),
+    "made_up_publisher": (MADE_UP_PUBLISHER, "it fed /gazebo a publisher of /cmd_vel that the "
+                          "master does not know", 0, 0),
+    "straight_call": (STRAIGHT_CALL, CALLED + "/gazebo/set_logger_level", 0, 0),
+    "brief_publisher": (BRIEF_PUBLISHER, "", 85, 100),
+    "sends_parameter": (slave_api("paramUpdate('/master', '/use_sim_time', False)"),
+                        "it sent /gazebo the parameter /use_sim_time", 0, 0),
+    "takes_name_quietly": (also(
+        "rospy.get_master().target.subscribeParam('/gazebo', 'http://127.0.0.1:9/', '/x')"),
+        "it asked the node /gazebo to end", 0, 0),
+    "kills_master": (also("rospy.get_master().target.shutdown('/x', 'end')"),
+                     "it ended a node of the course", 0, 0),
+    "kills_launch": (also("import xmlrpc.client\n"
+                          "uri = next(iter(rospy.get_param('/roslaunch/uris').values()))\n"
+                          "xmlrpc.client.ServerProxy(uri).log("
+                          "'x', 8, '[gazebo-1] process has died [pid 1, exit code 1]')"),
+                     "it sent roslaunch a report", 0, 0),
     "unregisters": (also(
         "import rosgraph\nm = rosgraph.Master('/gazebo')\n"
         "m.unregisterPublisher('/odom', m.lookupNode('/gazebo'))"), "the node /gazebo", 0, 0),

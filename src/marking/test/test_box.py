@@ -1,6 +1,7 @@
 """The sandbox alone, without ROS: what hostile programs see, use and leave behind."""
 
 import dataclasses
+import errno
 import os
 import shutil
 import subprocess
@@ -131,6 +132,14 @@ def test_a_process_that_may_not_be_killed_protects_no_other(boxed, monkeypatch):
 
 def test_printed_secrets_of_a_terminal_do_not_reach_the_reason(boxed):
     assert "\x1b" not in fault_of(boxed("raise RuntimeError('\\x1b[2J red')"))
+
+
+def test_the_shipped_rules_are_hidden(boxed):
+    program = ("import os\n"
+               f"rules = {str(made_up.RULES.parent)!r}\n"
+               "try:\n    open(rules + '/x', 'w')\n"
+               "except OSError as error:\n    raise RuntimeError(os.listdir(rules), error.errno)\n")
+    assert fault_of(boxed(program)).endswith(f"RuntimeError: ([], {errno.EROFS})")
 
 
 def test_its_output_is_kept_but_bounded(boxed, tmp_path):

@@ -1,6 +1,4 @@
-"""What simulator and master logged, and what of it the rules do not allow."""
-
-from collections import Counter
+"""What the master logged and the nodes refused, and what of it the rules do not allow."""
 
 import pytest
 from marking.conduct import Conduct, Course
@@ -8,8 +6,7 @@ from marking.conduct import Conduct, Course
 COURSE = Course(
     nodes=frozenset({"/gazebo", "/rosout"}), topics=frozenset({"/odom", "/cmd_vel", "/rosout"}),
     services=frozenset({"/gazebo/pause_physics"}), parameters=frozenset({"/use_sim_time"}),
-    may_publish=frozenset({"/cmd_vel", "/rosout"}), may_call=frozenset({"/gazebo/get_model_state"}),
-    own_calls=Counter(["/gazebo/unpause_physics"]))
+    may_publish=frozenset({"/cmd_vel", "/rosout"}))
 START = "[rosmaster.master][INFO] 2026-11-24 04:48:48,060: "
 
 
@@ -36,19 +33,34 @@ def test_registrations_at_the_master(line, says):
     assert conduct.violations == says
 
 
-@pytest.mark.parametrize(("entries", "says"), [
-    ([{"call": "/gazebo/get_model_state", "caller": "/x"}], []),
-    ([{"call": "/gazebo/unpause_physics", "caller": "/judge"}], []),
-    ([{"call": "/gazebo/unpause_physics", "caller": "/judge"}] * 2,
-     ["it called /gazebo/unpause_physics"]),
-    ([{"call": "/gazebo/set_model_state", "caller": "/judge"}] * 2,
-     ["it called /gazebo/set_model_state"]),
-    ([{"shutdown": "external shutdown request from [/x]: [end]"}], ["it ended the node /gazebo"]),
-    ([{"shutdown": "the simulation has ended"}], []),
-    ([{"time": 1.0, "poses": {}, "contacts": []}], []),
+@pytest.mark.parametrize(("refused", "name", "says"), [
+    ("service", "/gazebo/set_model_state", "it called /gazebo/set_model_state"),
+    ("publisher", "/cmd_vel",
+     "it fed /gazebo a publisher of /cmd_vel that the master does not know"),
+    ("parameter", "/rate", "it sent /gazebo the parameter /rate past the master"),
+    ("shutdown", "", "it asked the node /gazebo to end"),
+    ("launch", "", "it sent roslaunch a report, which only another roslaunch may"),
 ])
-def test_calls_of_the_simulator(entries, says):
+def test_what_the_nodes_refused(refused, name, says):
     conduct = Conduct(COURSE)
-    for entry in entries:
-        conduct.see_state(entry)
-    assert conduct.violations == says
+    conduct.see_refusals([{"guarded": 7}, {"node": "/gazebo", "refused": refused, "name": name,
+                                           "uri": "http://made:up/"}])
+    assert conduct.violations == [says]
+
+
+def test_many_and_long_names_stay_a_few_short_lines():
+    conduct = Conduct(COURSE)
+    conduct.see_registrations(f"{START}+PARAM [/gazebo/{each:03}{'x' * 1000}] by /x"
+                              for each in range(100))
+    assert len(conduct.violations) == 21
+    assert conduct.violations[-1] == "and 80 things more"
+    assert max(map(len, conduct.violations)) == 300
+
+
+def test_a_publisher_that_was_registered_and_is_gone_did_nothing_wrong():
+    conduct = Conduct(COURSE)
+    conduct.see_registrations([START + "+PUB [/cmd_vel] /brief http://localhost:1/",
+                               START + "-PUB [/cmd_vel] /brief http://localhost:1/"])
+    conduct.see_refusals([{"node": "/gazebo", "refused": "publisher", "name": "/cmd_vel",
+                           "uri": "http://localhost:1/"}])
+    assert conduct.violations == []

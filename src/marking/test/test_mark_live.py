@@ -14,7 +14,7 @@ import pytest
 pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parents[1] / "scripts" / "mark.py"
 LIMIT = 500.0  # s, wall: a lap, and three starts of the course on a busy machine
-CLASS = {"good", "sets_state", "odom", "kills_simulator", "zip_bomb.zip", "report.docx"}
+CLASS = {"good", "sets_state", "odom", "made_up_publisher", "zip_bomb.zip", "report.docx"}
 
 
 def command(folder: Path, *options: str) -> list[str]:
@@ -87,6 +87,10 @@ def test_a_course_that_is_not_there_is_one_line(tmp_path):
 
 def test_rules_that_submissions_could_read_are_refused(tmp_path):
     made_up.write(tmp_path / "in", {"good"})
-    done = mark(tmp_path, "--rules", str(made_up.RULES))
+    shown = made_up.RULES.parents[1] / "test" / f"{tmp_path.name}.yaml"
+    try:
+        done = mark(tmp_path, "--rules", str(made_up.write_rules(shown)))
+    finally:
+        shown.unlink()
     assert done.returncode == 2
     assert "every submission could read it there" in done.stderr

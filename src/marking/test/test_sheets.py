@@ -54,6 +54,16 @@ def test_pages_show_what_was_printed_and_run_none_of_it(tmp_path):
         assert EVIL not in each.read_text()
 
 
+def test_terminal_codes_are_shown_as_text(tmp_path):
+    write(tmp_path)
+    output = tmp_path / "cases" / "张伟" / "track0-seed1" / OUTPUT
+    output.write_text("\x1b]0;own\x07\x1b[31m红\x1b[0m\n\tb\u202e\x00\x9b2J", encoding="utf-8")
+    marks = [Mark("a/0-1", "张伟", "track0-seed1", "closed", 90.5, (), "cases/张伟/track0-seed1")]
+    write_student_pages(by_student(marks), load_rules(RULES), tmp_path)
+    page = (tmp_path / "students" / "张伟" / "index.html").read_text(encoding="utf-8")
+    assert r"<pre>\x1b]0;own\x07\x1b[31m红\x1b[0m" "\n\tb" r"\u202e\x00\x9b2J</pre>" in page
+
+
 def test_what_strangers_wrote_becomes_one_line():
     assert one_line("a\x1b[2J\nb\r") == "a [2J b"
     assert one_line("\udcff") == "?"

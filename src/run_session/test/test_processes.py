@@ -7,7 +7,7 @@ import time
 import psutil
 import pytest
 
-from run_session.processes import Family, end_with_parent
+from run_session.processes import Family, end_with_parent, strip_terminal_codes
 
 pytestmark = pytest.mark.processes
 # Ends at Ctrl-C; what it has started, in a session of its own, does not.
@@ -28,3 +28,9 @@ def test_what_a_child_has_started_ends_with_it(tmp_path):
 def test_a_program_whose_parent_has_died_meanwhile_is_not_begun():
     nobody = 1 << 22  # more than Linux numbers processes
     assert subprocess.Popen(["sleep", "1000"], preexec_fn=end_with_parent(nobody)).wait(60) == 0
+
+
+@pytest.mark.parametrize("code", [
+    "\x1b[1;31m", "\x1b[2J", "\x1b[?25l", "\x1b]0;title\x07", "\x1bc", "\x1b"])
+def test_no_code_of_a_program_s_output_reaches_the_terminal(code):
+    assert strip_terminal_codes(f"a{code}\nb") == "a\nb"

@@ -1,4 +1,4 @@
-"""What a submission did that the rules forbid, from the logs of simulator and ROS master.
+"""What a submission did that the rules forbid, from the ROS master's log and the guard's record.
 
 All other nodes are up before the submission starts, and call nothing more: whatever is logged from
 then on was done by the submission, whatever name its nodes have.
@@ -7,12 +7,20 @@ then on was done by the submission, whatever name its nodes have.
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 # rosmaster's log, master_api.py: "+PUB [/odom] /node http://..." and "+PARAM [/name] by /node"
-REGISTRATION = re.compile(r": ([+-])(PUB|SUB|SERVICE|PARAM) \[(.*?)\] (?:by )?(\S*)")
+REGISTRATION = re.compile(r": ([+-])(PUB|SUB|SERVICE|PARAM) \[(.*?)\] (?:by )?(\S*) ?(\S*)")
+# By kind of guard.py's refusals
+REFUSALS = {"service": "it called {name}",
+            "publisher": "it fed {node} a publisher of {name} that the master does not know",
+            "parameter": "it sent {node} the parameter {name} past the master",
+            "shutdown": "it asked the node {node} to end",
+            "launch": "it sent roslaunch a report, which only another roslaunch may"}
+
+
+LONGEST, MOST = 300, 20  # characters of a violation, violations that are named
 
 
 @dataclass(frozen=True)
@@ -24,32 +32,31 @@ class Course:
     services: frozenset[str]
     parameters: frozenset[str]
     may_publish: frozenset[str]
-    may_call: frozenset[str]
-    own_calls: Counter[str]  # number of calls by the judge itself, by service
 
 
 class Conduct:
-    """Reads the logs as they grow, and collects violations."""
+    """Reads log and record as they grow, and collects violations."""
 
     def __init__(self, course: Course):
         self._course = course
-        self._calls: Counter[str] = Counter()
+        self._publishers: set[tuple[str, str]] = set()  # topic and address, once registered
         self._found: set[str] = set()
 
     @property
     def violations(self) -> list[str]:
         """One line each, sorted, so that the order does not depend on time."""
-        return sorted(self._found)
+        found = sorted(each[:LONGEST] for each in self._found)
+        more = [f"and {len(found) - MOST} things more"] if len(found) > MOST else []
+        return [*found[:MOST], *more]
 
-    def see_state(self, entry: Mapping) -> None:
-        """Take a line of the state log; lines with poses are ignored here."""
-        if entry.get("shutdown", "").startswith("external shutdown"):
-            self._found.add("it ended the node /gazebo")
-        if name := entry.get("call"):
-            self._calls[name] += 1
-            if name not in self._course.may_call and (
-                    self._calls[name] > self._course.own_calls[name]):
-                self._found.add(f"it called {name}")
+    def see_refusals(self, entries: Iterable[Mapping[str, str]]) -> None:
+        """Take new entries of the guard's record, after the master's log up to the same moment.
+
+        A node that has unregistered before it could be connected to did nothing wrong.
+        """
+        for entry in entries:
+            if (entry.get("name"), entry.get("uri")) not in self._publishers and "refused" in entry:
+                self._found.add(REFUSALS[entry["refused"]].format_map(entry))
 
     def see_end(self, what: str) -> None:
         """Take note that a node of the course was ended without crashing."""
@@ -60,7 +67,10 @@ class Conduct:
         """Take new lines of the master's log."""
         for line in lines:
             if found := REGISTRATION.search(line):
-                self._found |= set(_of_registration(*found.groups(), self._course))
+                sign, kind, name, node, uri = found.groups()
+                if sign + kind == "+PUB":
+                    self._publishers.add((name, uri))
+                self._found |= set(_of_registration(sign, kind, name, node, self._course))
 
 
 def _of_registration(sign: str, kind: str, name: str, node: str, course: Course) -> Iterator[str]:

@@ -6,14 +6,13 @@ import itertools
 import sys
 import time
 import xmlrpc.client
-from collections import Counter
 from pathlib import Path
 
 import rosgraph
 import rospy
 from gazebo_msgs.srv import GetWorldProperties
 
-from marking import conduct, film
+from marking import conduct, film, guard
 from marking.case_files import CaseFile
 from marking.rules import Rules
 from run_session import names
@@ -45,6 +44,8 @@ class CourseUp:
         launched.start("roslaunch", ["roslaunch", *self._course.launch, *case.launch_args])
         launched.wait_for("the course", self._is_ready, STARTUP_LIMIT, pause=LOOK_PERIOD)
         self.film = self._start_film(folder) if case.film else None
+        found = self._connections()
+        guard.check_guarded(self._master, frozenset().union(*found.subscribers.values()), folder)
 
     def look_around(self, rules: Rules) -> tuple[conduct.Course, Tail]:
         """The ROS graph before the submission starts, and the master's log from here on."""
@@ -59,8 +60,7 @@ class CourseUp:
             frozenset(name for name, _ in [*publishers, *subscribers]),
             frozenset(name for name, _ in services),
             frozenset(self._master.getParamNames()),
-            frozenset([*rules.may_publish, self._course.commands]),
-            frozenset(rules.may_call), Counter([names.UNPAUSE])), master_log
+            frozenset([*rules.may_publish, self._course.commands])), master_log
 
     def missing_link(self) -> str | None:
         """What the submission still has to do before time begins, in words; None: nothing."""

@@ -1,7 +1,7 @@
 """One case in its own process: starts the course and the submission, supervises, reports.
 
-Poses, contacts and calls come from the simulator's state log, a file that is not visible in the
-sandbox: no topic and no node name is trusted.
+Poses and contacts come from the simulator's state log, a file that is not visible in the sandbox:
+no topic and no node name is trusted.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from std_srvs.srv import Empty
 from evaluation.lap import Verdict
 from evaluation.session.encoders import FINISH_TIME, WRITE_TIME
 from evaluation.trial.program import run_program
-from marking import conduct
+from marking import conduct, guard
 from marking.box import Box
 from marking.case_files import OUTPUT, CaseFile, read_case
 from marking.course_up import LOOK_PERIOD, CourseUp
@@ -33,7 +33,7 @@ from marking.sandbox import Kind
 from marking.states import STATE_LOG, bytes_below, sample_of
 from run_session import names
 from run_session.failure import RunError
-from run_session.launch import Launched
+from run_session.launch import LOOPBACK, Launched
 from run_session.session import Session
 from run_session.tail import Tail
 
@@ -57,12 +57,15 @@ class MarkedDrive:
 
     def run(self) -> dict:
         """The case's report; RunError if the course itself could not be run."""
-        launched = self._session.launched("car", alone=self._case.kind != Kind.NONE.value)
+        launched = self._session.launched("car", alone=self._case.kind != Kind.NONE.value,
+                                          environment=guard.environment(self._folder))
         self._log_folder = launched.log_folder
         course = CourseUp(launched, self._case, self._folder, self._state_log.path)
         there, self._master_log = course.look_around(self._rules)
         self._conduct = conduct.Conduct(there)
+        self._guard_record = Tail(self._folder / guard.RECORD)
         self._state_log.skip()
+        guard.seal(self._folder, self._rules.may_call, Counter([names.UNPAUSE]))
         box = Box(Kind(self._case.kind), Path(self._case.submission), Path(self._case.program),
                   self._limits, _environment(launched.master_uri), self._folder / OUTPUT)
         try:
@@ -124,7 +127,10 @@ class MarkedDrive:
 
     def _read_logs(self) -> None:
         self._take_samples()
+        # The record first: a publisher that it names may be in the master's log, if only briefly.
+        refused = [json.loads(line) for line in self._guard_record.lines()]
         self._conduct.see_registrations(self._master_log.lines())
+        self._conduct.see_refusals(refused)
         if self._state_log.read + bytes_below(self._log_folder) > MOST_LOGGED:
             self._fault = f"it had more than {MOST_LOGGED / 1e6:g} MB logged"
 
@@ -132,7 +138,6 @@ class MarkedDrive:
         """Score the state log's new lines."""
         for line in self._state_log.lines():
             entry = json.loads(line)
-            self._conduct.see_state(entry)
             if not self._case.timed and entry.get("unanswered", 0) > self._limits.unanswered:
                 self._again = True
             sample = sample_of(entry, self._robot)
@@ -154,7 +159,7 @@ def _environment(master_uri: str) -> dict[str, str]:
     """The environment variables that ROS and Python need, and nothing else of the teacher's."""
     kept = ("PYTHONPATH", "PATH", "ROS_PACKAGE_PATH", "ROS_ROOT", "ROS_DISTRO", "ROS_VERSION",
             "ROS_ETC_DIR", "ROS_PYTHON_VERSION", "TURTLEBOT3_MODEL")
-    return {"LANG": "C.UTF-8", "ROS_MASTER_URI": master_uri, "ROS_HOSTNAME": "localhost",
+    return {"LANG": "C.UTF-8", "ROS_MASTER_URI": master_uri, "ROS_HOSTNAME": LOOPBACK,
             **{name: os.environ[name] for name in kept if name in os.environ}}
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from marking.rules import Limits
 from run_session.failure import RunError
+from run_session.resources import find_package
 
 # The entries of /etc that Python, ROS, OpenCV and the dynamic linker read.
 ETC = ("alternatives", "fonts", "group", "hosts", "ld.so.cache", "ld.so.conf", "ld.so.conf.d",
@@ -65,6 +66,11 @@ def shown() -> list[Path]:
     return [prefix, *(path for path in beside if path.is_dir())]
 
 
+def hidden() -> list[Path]:
+    """Folders within these that a submission sees empty: the shipped rules."""
+    return [find_package("marking") / "config"]
+
+
 def sandbox(kind: Kind, limits: Limits, folder: Path | None = None) -> list[str]:
     """Command prefix of a sandboxed program, which sees `folder` as SUBMISSION."""
     memory, disk = int(limits.memory_mb * 1e6), int(limits.disk_mb * 1e6)
@@ -101,6 +107,8 @@ def _view(limits: Limits, folder: Path | None) -> list[str]:
           for word in ("--symlink", f"usr/{name}", f"/{name}")],
         *[word for path in (*(f"/etc/{name}" for name in ETC), *map(str, shown()))
           for word in ("--ro-bind-try", path, path)],
+        *_each(("--perms", "755", "--tmpfs"), list(map(str, hidden()))),
+        *_each(("--remount-ro",), list(map(str, hidden()))),
         *(["--ro-bind", str(folder), SUBMISSION] if folder else []),
         "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", HOME,
     ]

@@ -15,6 +15,7 @@ from marking.mark import Mark
 from marking.points import mean
 from marking.rules import Rules
 from marking.sandbox import Kind
+from marking.text import visible
 from run_session.files import write_whole
 
 MARKS, PAGE, STUDENT_PAGE = "marks.csv", "marks.html", "index.html"
@@ -93,7 +94,7 @@ def _output(mark: Mark, out: Path) -> str:
     path = out / mark.folder / OUTPUT
     if not mark.folder or not path.exists():
         return ""
-    text = path.read_text(encoding="utf-8", errors="replace")
+    text = visible(path.read_text(encoding="utf-8", errors="replace"))
     return f"<p>What the program printed:</p><pre>{escape(text)}</pre>" if text.strip() else ""
 
 

@@ -11,6 +11,13 @@ def one_line(text: str) -> str:
     return "".join(each if each.isprintable() else " " for each in whole).strip()
 
 
+def visible(text: str) -> str:
+    """Text of several lines in which control and other unprintable characters are shown as codes.
+    """
+    return "".join(each if each.isprintable() or each in "\n\t" else
+                   each.encode("unicode_escape").decode() for each in text)
+
+
 def file_name(name: str) -> str:
     """A file's name as text; Chinese Windows writes them in GBK."""
     raw = os.fsencode(name)

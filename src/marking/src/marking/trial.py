@@ -23,13 +23,14 @@ from marking.drive_report import BY_TIME
 from marking.mark import Mark, by_student
 from marking.points import mean, points_of
 from marking.rules import load_rules
-from marking.sandbox import Kind, available, namespace, shown
+from marking.sandbox import Kind, available, hidden, namespace, shown
 from marking.sheets import MARKS, PAGE, write_marks, write_student_pages
 from marking.submissions import digest, find_submissions, prepare
 from marking.text import one_line
 from marking.unpacking import UnpackError
 from marking.venues import COURSES, make_scene
 from run_session.failure import RunError
+from run_session.launch import LOOPBACK
 from run_session.resources import find_package
 from run_session.session import Session
 
@@ -91,8 +92,9 @@ class MarkingTrial(ReportedTrial):
     def _refuse_what_the_sandbox_shows(self, options: argparse.Namespace) -> None:
         for what, path in (("--submissions", options.submissions), ("--out", options.out),
                            ("--rules", options.rules)):
-            inside = path and any(map(path.resolve().is_relative_to, shown()))
-            if inside and self._kind is not Kind.NONE:
+            seen = path and any(map(path.resolve().is_relative_to, shown())) and not any(
+                map(path.resolve().is_relative_to, hidden()))
+            if seen and self._kind is not Kind.NONE:
                 raise RunError(f"{what} {path}: every submission could read it there; put it "
                                f"outside {' '.join(map(str, shown()))}")
 
@@ -134,7 +136,7 @@ class MarkingTrial(ReportedTrial):
         file.write(folder)
         command = [*namespace(self._kind), sys.executable, "-P", "-m", "marking.drive",
                    str(folder)]
-        environment = {**os.environ, MODEL_PATH: self._scene.models, "ROS_HOSTNAME": "localhost"}
+        environment = {**os.environ, MODEL_PATH: self._scene.models, "ROS_HOSTNAME": LOOPBACK}
         limits = self._rules.limits
         limit = limits.start_s + limits.wall_s + 3 * STARTUP_LIMIT
         for _ in range(TRIES):

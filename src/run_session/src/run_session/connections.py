@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+import socket
+import threading
 import xmlrpc.client
 from collections.abc import Iterable
 from dataclasses import dataclass
+from http.client import HTTPConnection, HTTPException
+from xml.parsers.expat import ExpatError
 
 import rosgraph
 
@@ -60,14 +65,38 @@ def _links_of(master: rosgraph.Master, caller: str, node: str) -> list[tuple[str
             for _, receiver, direction, _, topic, is_open, *_ in connections
             if direction == "o" and is_open
         ]
-    except (OSError, xmlrpc.client.Error, rosgraph.MasterException, TypeError, ValueError):
+    except (OSError, xmlrpc.client.Error, HTTPException, ExpatError, rosgraph.MasterException,
+            AttributeError, LookupError, TypeError, ValueError):
         return []  # it hangs, is gone, or its answer is malformed
 
 
 class _ImpatientTransport(xmlrpc.client.Transport):
-    """Has a timeout, because a node may hang."""
+    """Hangs up after ANSWER_TIME, because a node may hang, or answer without an end."""
 
-    def make_connection(self, host: str) -> object:
-        connection = super().make_connection(host)
-        connection.timeout = ANSWER_TIME
-        return connection
+    def make_connection(self, host: str) -> HTTPConnection:
+        self._connection = host, _Connection(host, timeout=ANSWER_TIME)
+        return self._connection[1]
+
+    def single_request(self, *request: object, **options: object) -> object:
+        limit = threading.Timer(ANSWER_TIME, lambda: self._connection[1].hang_up())
+        limit.start()
+        try:
+            return super().single_request(*request, **options)
+        finally:
+            limit.cancel()
+
+
+class _Connection(HTTPConnection):
+    """Can be ended while an answer is read, for which HTTPConnection lets its socket go."""
+
+    _connected: socket.socket | None = None
+
+    def connect(self) -> None:
+        super().connect()
+        self._connected = self.sock
+
+    def hang_up(self) -> None:
+        """From another thread: whoever reads then finds the end."""
+        if self._connected is not None:
+            with contextlib.suppress(OSError):  # it has just ended
+                self._connected.shutdown(socket.SHUT_RDWR)

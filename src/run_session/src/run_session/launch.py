@@ -10,9 +10,10 @@ import socket
 import tempfile
 import time
 import xmlrpc.client
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from http.client import HTTPException
 from pathlib import Path
+from types import MappingProxyType
 from xml.parsers.expat import ExpatError
 
 from run_session.failure import RunError
@@ -20,6 +21,7 @@ from run_session.processes import INTERRUPT_TIME, Child, Family
 from run_session.turn import take_turn
 
 USUAL_PORT = 11311
+LOOPBACK = "127.0.0.1"  # not localhost: that is ::1 too, where another program may listen
 ROSCORE_TIME = 300.0  # s, wall; an emulated ARM processor takes more than 20
 LOOK_PERIOD = 0.05  # s, wall
 ROSCORE_LOG = "roscore.log"  # in the folder of each run's logs
@@ -35,9 +37,11 @@ class Launched:
 
     def __init__(
         self, family: Family, log_folder: Path, follower: str = "", vehicle: str = "car",
-        alone: bool = False
+        alone: bool = False, environment: Mapping[str, str] = MappingProxyType({})
     ):
-        """`alone`: in a network namespace of its own, where no other run chooses a port."""
+        """`alone`: in a network namespace of its own, where no other run chooses a port.
+
+        `environment`: further variables for all programs."""
         self._family, self._follower, self._vehicle = family, follower, vehicle
         self.log_folder = log_folder
         _remove_logs(self.log_folder)
@@ -46,12 +50,13 @@ class Launched:
         turn = log_folder if alone else Path(tempfile.gettempdir())
         self._turn = take_turn(turn / f"course_run-{os.getuid()}.lock")
         self.port = free_port()
-        self.master_uri = f"http://localhost:{self.port}"
+        self.master_uri = f"http://{LOOPBACK if alone else 'localhost'}:{self.port}"
         self._environment = dict(
             os.environ,
             ROS_MASTER_URI=self.master_uri,
             ROS_LOG_DIR=str(self.log_folder),
             PYTHONUNBUFFERED="1",
+            **environment,
         )
         self._children: list[Child] = []
         self._said: list[str] = []  # output lines of all children, as `check` has read them

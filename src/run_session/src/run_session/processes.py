@@ -17,7 +17,8 @@ import psutil
 
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36  # <linux/prctl.h>
 INTERRUPT_TIME, TERMINATE_TIME, KILL_TIME = 1.2, 0.4, 0.6  # s; all within the 3 s of a Ctrl-C
-_TERMINAL_CODES = re.compile(r"\x1b\[[0-9;]*m|\x1b\][^\x07\n]*\x07?")  # colours, window titles
+# Colours and all else that begins with ESC [; window titles; other characters with ESC
+_TERMINAL_CODES = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b\n]*\x07?|\x1b.?")
 _libc = ctypes.CDLL(None, use_errno=True)
 
 

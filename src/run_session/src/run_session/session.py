@@ -43,12 +43,13 @@ class Session:
         """Call `act` before the processes are ended."""
         self._at_end.callback(act)
 
-    def launched(self, vehicle: str, driver: str = "", alone: bool = False) -> Launched:
+    def launched(self, vehicle: str, driver: str = "", alone: bool = False,
+                 environment: Mapping[str, str] | None = None) -> Launched:
         """This run's own ROS master and launch files; logs go to OUT/log.
 
-        `alone`: in a network namespace of its own.
+        `alone`: in a network namespace of its own; `environment`: further variables.
         """
-        return Launched(self.family, self.out / "log", driver, vehicle, alone)
+        return Launched(self.family, self.out / "log", driver, vehicle, alone, environment or {})
 
     def start_drive(self, command: list[str], folder: Path,
                     environment: Mapping[str, str] | None = None) -> DriveProcess:

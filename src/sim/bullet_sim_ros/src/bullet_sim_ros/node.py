@@ -26,8 +26,7 @@ from bullet_sim_ros.only_simulator import register
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters, read_node_parameters
 from bullet_sim_ros.plugins import register_plugins
-from bullet_sim_ros.prompt_connection import send_promptly
-from bullet_sim_ros.publisher_lists import keep_every_publisher
+from bullet_sim_ros.rospy_patches import keep_every_publisher, send_promptly
 from bullet_sim_ros.scene_topic import SceneTopic
 from bullet_sim_ros.services import offer_services
 from bullet_sim_ros.shutdown import end_before_topics, end_by_signals, shut_down

@@ -9,18 +9,8 @@ import socket
 import threading
 from collections import deque
 
-import rospy.topics
 from rospy.exceptions import TransportTerminated
 from rospy.impl.transport import Transport
-
-from bullet_sim_ros.message_buffer import MessageBuffer
-
-
-def send_promptly() -> None:
-    """Make all publishers of this process, which need a queue, send so; before the first is made.
-    """
-    rospy.topics.QueuedConnection = PromptConnection
-    rospy.topics.BytesIO = MessageBuffer
 
 
 class PromptConnection:
