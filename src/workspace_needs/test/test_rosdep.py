@@ -3,11 +3,13 @@
 import importlib.util
 import io
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from workspace_needs.places import release
 from workspace_needs.rosdep_command import Watch
 from workspace_needs.tables import Tables
 from workspaces import add_package, turtlebot3_style
@@ -44,6 +46,32 @@ def test_without_init_update_and_network(rosdep, tmp_path):
     code, _, said = rosdep("resolve", "moveit_core")
     assert code == 1 and "MoveIt is not in Debian" in said
     assert [path.name for path in (tmp_path / "home/.ros").iterdir()] == ["rosdep-courses"]
+
+
+def of_one_release():
+    """A key that this release lacks, and the line about it."""
+    tables = Tables()
+    lacking = [key for key, rule in tables.debian.items()
+               if rule["debian"].get(release()) is None and "-" not in key]
+    return lacking[0], tables.answer(lacking[0]).why
+
+
+def test_a_key_that_only_the_other_release_has(rosdep, tmp_path):
+    key, why = of_one_release()
+    assert re.fullmatch(r"Debian 1\d has it, Debian 1\d does not", why)
+    code, _, said = rosdep("resolve", key)
+    assert code == 1 and said.endswith(f"rosdep: {key}: {why}\n")
+    add_package(tmp_path / "src", "eye", f"roscpp {key}")
+    for command in (("install", "-y", "-s"), ("check",)):
+        _, _, said = rosdep(*command, "--from-paths", "src", "--ignore-src")
+        assert said == f"rosdep: {key} (for eye): {why}\n"
+
+
+@pytest.mark.parametrize("key, of_release, why", [
+    ("compressed_image_transport", "bookworm", "Debian 13 has it, Debian 12 does not"),
+    ("python_qt_binding", "trixie", "Debian 12 has it, Debian 13 does not")])
+def test_who_has_a_key_of_one_release(key, of_release, why):
+    assert Tables(of_release=of_release).answer(key).why == why
 
 
 @pytest.mark.parametrize("distro", [(), ("--rosdistro", "noetic"), ("--rosdistro=melodic",)])

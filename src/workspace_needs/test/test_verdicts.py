@@ -2,6 +2,7 @@
 
 import pytest
 from workspace_needs.build_commands import catkin_make_isolated_words, catkin_make_words
+from workspace_needs.tables import Tables
 from workspace_needs.verdicts import judge
 from workspace_needs.workspace import OUR_ADDRESS, WorkspaceError, source_folder
 from workspaces import add_package, turtlebot3_style
@@ -40,6 +41,14 @@ def test_what_nobody_has_stops_its_package_and_those_built_on_it(tmp_path, bare)
     assert of(source, "hand").stops == {"arm": "it is left out itself"}
     wheel = of(source, "wheel")
     assert wheel.builds and "is rospy meant?" in wheel.lacks["rospyy"]
+
+
+def test_what_another_release_has_is_said(tmp_path, bare):
+    source = tmp_path / "src"
+    add_package(source, "eye", "compressed_image_transport")
+    verdict, = judge(source, Tables(of_release="bookworm"))
+    assert verdict.lacks["compressed_image_transport"].startswith(
+        "Debian 13 has it, Debian 12 does not")
 
 
 def test_a_plugin_of_gazebo_in_cpp_is_left_out_alone(tmp_path, bare):

@@ -117,9 +117,12 @@ class Watch:
 
         def look_up(view, key: str):
             try:
-                return view_lookup(view, key)
+                found = view_lookup(view, key)
             except KeyError:
+                found = None
+            if found is None or self._tables.answer(key).kind == ABSENT:
                 return lookup.RosdepDefinition(key, {"debian": list(self._other(key))})
+            return found
 
         def ask(lookups, resource: str, implicit: bool = True):
             keys = get_rosdeps(lookups, resource, implicit=implicit)

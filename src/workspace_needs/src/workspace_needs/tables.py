@@ -18,6 +18,7 @@ from workspace_needs.places import package_folder, release
 OURS, DEBIAN, ABSENT, UNKNOWN = "ours", "debian", "absent", "unknown"
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 # Forms of Debian names (lib..., hyphens) that ROS packages never have, so that none is confused.
+RELEASES = {"bookworm": "Debian 12", "trixie": "Debian 13"}
 DEBIAN_NAME = re.compile(r"lib[a-z0-9.+-]+|[a-z0-9][a-z0-9.+]*(-[a-z0-9.+]+)+")
 
 
@@ -69,7 +70,19 @@ class Tables:
             return Answer(ABSENT, why=absence.why)
         if DEBIAN_NAME.fullmatch(key) and key in self._apt_names:
             return Answer(DEBIAN, (key,))
+        if others := self._other_releases(key):
+            return Answer(ABSENT, why=f"{others}, {self._named(self._release)} does not")
         return Answer(UNKNOWN, why=self._nobody(key))
+
+    def _other_releases(self, key: str) -> str:
+        """`Debian 13 has it`, or nothing if no other release has `key` either."""
+        found = self.debian.get(key, {}).get("debian", {})
+        names = [self._named(name) for name, packages in found.items() if packages is not None]
+        return " and ".join(names) + (" has it" if len(names) == 1 else " have it") if names else ""
+
+    @staticmethod
+    def _named(release: str) -> str:
+        return RELEASES.get(release, release or "this system")
 
     def absence(self, key: str) -> Absence | None:
         """Why nobody has `key`, if that is known."""
