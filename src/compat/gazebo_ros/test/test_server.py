@@ -85,11 +85,23 @@ def test_the_script_becomes_the_node(start, name, dev, profiled):
     assert process.stdout.readline() == "stopped\n" and process.wait(60) == 3
 
 
-def test_gazebo_is_the_clients_line_and_the_server(start):
+def test_gazebo_in_a_launch_file_is_the_clients_line_and_the_server(start):
     # conforms: gazebo
-    process = start("gazebo", "a.world")
+    process = start("gazebo", "a.world", "__name:=gazebo")
     assert "image_view" in process.stdout.readline()
     assert process.stdout.readline().split()[0] == str(process.pid)
+
+
+def test_gazebo_typed_is_roslaunch_with_the_world_and_the_page(start, tmp_path):
+    (tmp_path / "my own.world").touch()
+    roslaunch = tmp_path / "roslaunch"
+    roslaunch.write_text('#!/bin/sh\nprintf "%s\\n" "$@"\n')
+    roslaunch.chmod(0o755)
+    path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
+    said, _ = start("gazebo", "-u", "my own.world", PATH=path).communicate(timeout=60)
+    assert said.splitlines() == [
+        "gazebo_ros", "empty_world.launch", "gui:=false", "viewer:=true", "server_required:=true",
+        f"extra_gazebo_args:=-u '{tmp_path}/my own.world'"]
 
 
 @pytest.mark.parametrize("name", ["gzserver", "gzclient", "gazebo", "debug"])
@@ -107,6 +119,7 @@ def test_the_client_says_how_to_look_and_ends_with_0(start, number):
     process = start("gzclient", "--verbose", "__name:=gazebo_gui")
     line = process.stdout.readline()
     assert "rosrun image_view image_view" in line and "rviz" in line
+    assert Path(f"/proc/{process.pid}/comm").read_text() == "gzclient\n"
     process.send_signal(number)
     said, _ = process.communicate(timeout=60)
     assert (said, process.returncode) == ("", 0)

@@ -1,6 +1,7 @@
 """Stands in for Gazebo's window: says once how to look at the world, then waits for the end."""
 
 import argparse
+import ctypes
 import os
 import signal
 import socket
@@ -14,6 +15,7 @@ HOW_TO_LOOK = (
     "rosrun image_view image_view image:=TOPIC (of rostopic list); rviz"
 )
 POLL_PERIOD = 2.0  # s
+PR_SET_NAME = 15  # of prctl(2)
 
 
 def master_is_there() -> bool:
@@ -28,6 +30,7 @@ def master_is_there() -> bool:
 def main() -> None:
     """No ROS node on purpose: one would be handed every /clock message."""
     parent = os.getppid()  # before anybody is told anything
+    ctypes.CDLL(None).prctl(PR_SET_NAME, b"gzclient")  # for killall and pgrep
     parser = argparse.ArgumentParser(prog="gzclient", description=HOW_TO_LOOK)
     parser.add_argument("-v", "--version", action="version", version="gzclient: no window")
     parser.parse_known_args([word for word in sys.argv[1:] if ":=" not in word])

@@ -2,7 +2,9 @@
 
 import argparse
 import os
+import shlex
 import sys
+from pathlib import Path
 
 ABOUT = "PyBullet behind Gazebo 11's ROS interface"
 SWITCHES_WITHOUT_EFFECT = (
@@ -54,6 +56,18 @@ def main(python_options: tuple[str, ...] = (), hint: str = "") -> None:
     arguments = node_arguments(program, sys.argv[1:])
     if hint:
         print(f"[{program}] {hint}", flush=True)
-    # -P: a learner's file in the current folder must not hide a module
-    python = [sys.executable, "-P", *python_options, "-m", "bullet_sim_ros"]
+    # -P: a learner's file in the current folder must not hide a module. -X takes any word:
+    # pkill -f gzserver finds this one.
+    python = [sys.executable, "-P", "-X", "gzserver", *python_options, "-m", "bullet_sim_ros"]
     os.execv(sys.executable, [*python, *arguments])
+
+
+def launch() -> None:
+    """Become roslaunch with this command line's world and the page; it starts a missing master."""
+    words = sys.argv[1:]
+    parser("gazebo").parse_known_args(words)  # -h and -v end here
+    # roslaunch starts nodes in another folder
+    words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in words]
+    os.execvp("roslaunch", [
+        "roslaunch", "gazebo_ros", "empty_world.launch", "gui:=false", "viewer:=true",
+        "server_required:=true", f"extra_gazebo_args:={shlex.join(words)}"])

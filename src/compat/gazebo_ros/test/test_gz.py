@@ -1,0 +1,49 @@
+"""gz without a simulator: files, and the line for what is not here."""
+
+import subprocess
+
+import pytest
+
+ROBOT = """<robot name="cart">
+<link name="body"><inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0"
+iyz="0"/></inertial><visual><geometry><box size="1 2 3"/></geometry></visual></link></robot>"""
+
+
+def gz(*words, **variables):
+    return subprocess.run(["gz", *words], capture_output=True, text=True, timeout=60, check=False,
+                          **variables)
+
+
+def test_a_urdf_file_is_printed_as_sdf_and_checked(tmp_path):
+    # conforms: gz/sdf
+    (tmp_path / "cart.urdf").write_text(ROBOT, encoding="utf-8")
+    printed = gz("sdf", "-p", "cart.urdf", cwd=tmp_path)
+    assert printed.stderr == "" and "<size>1 2 3</size>" in printed.stdout
+    (tmp_path / "cart.sdf").write_text(printed.stdout, encoding="utf-8")
+    checked = gz("sdf", "-k", "cart.sdf", cwd=tmp_path)
+    assert (checked.stdout, checked.stderr) == ("Check complete\n", "")
+    assert gz("sdf", "-p", "cart.sdf", cwd=tmp_path).stdout == printed.stdout
+
+
+@pytest.mark.parametrize("text, reason", [
+    ("<robot name='r'>", "r.urdf"), ("<robot name='r'/>", "r"), (None, "Unable to find file")])
+def test_what_is_no_model_is_one_line(tmp_path, text, reason):
+    if text is not None:
+        (tmp_path / "r.urdf").write_text(text, encoding="utf-8")
+    done = gz("sdf", "-k", "r.urdf", cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (1, "", 1)
+    assert done.stderr.startswith("gz sdf: ") and reason in done.stderr
+
+
+@pytest.mark.parametrize("command", ["camera", "debug", "joint", "log", "marker", "physics",
+                                     "stats"])
+def test_other_commands_name_what_does_it_here(command):
+    done = gz(command, "-h")
+    assert done.returncode == 1 and done.stdout == ""
+    assert done.stderr.startswith(f"gz {command} has no counterpart here. Type: ros")
+
+
+def test_without_a_simulator_it_says_so(monkeypatch):
+    monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:9")
+    done = gz("model", "--list")
+    assert done.returncode == 1 and "roslaunch gazebo_ros empty_world.launch" in done.stderr
