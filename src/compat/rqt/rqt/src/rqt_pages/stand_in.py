@@ -1,5 +1,7 @@
-"""One line that says where rqt's work is done here; in a launch file it stays until Ctrl-C."""
+"""One line that says where a window's work is done here; in a launch file it stays until Ctrl-C."""
 
+import argparse
+import os
 import signal
 import sys
 import threading
@@ -7,11 +9,14 @@ from collections.abc import Sequence
 
 PAGE = "roslaunch sim_viewer viewer.launch"
 DRIVING = f"{PAGE} control:=true"
+RVIZ_PAGE = "rosrun sim_viewer rviz_page -d"
 
 # What does the work of each tool: the tab of the page, or a command to type.
 TABS = {"rqt_graph": "Graph", "rqt_plot": "Plot", "rqt_multiplot": "Plot",
         "rqt_image_view": "Cameras", "rqt_console": "Console", "rqt_tf_tree": "TF",
-        "rqt_bag": "Bags", "rqt_topic": "Topics", "rqt_robot_monitor": "Topics", "rqt_rviz": "3D",
+        "rqt_bag": "Bags", "rqt_topic": "Topics", "rqt_robot_monitor": "Topics", "rqt_rviz": "RViz",
+        "rviz": "RViz", "image_view": "Cameras", "stereo_view": "Cameras",
+        "disparity_view": "Cameras",
         "rqt_robot_steering": "Drive", "rqt_service_caller": "Services"}
 CONTROLS = ("rqt_robot_steering", "rqt_service_caller", "rqt_bag")  # tabs that change something
 COMMANDS = {
@@ -30,8 +35,24 @@ def line_for(tool: str, arguments: Sequence[str]) -> str:
     if tool in COMMANDS:
         return f"{tool} has no window here. Type: {COMMANDS[tool]}"
     page = DRIVING if tool in CONTROLS else PAGE
+    if TABS.get(tool) == "RViz" and (file := _display_config(arguments)):
+        page = f"{RVIZ_PAGE} {file}"
     tab = f", tab {TABS[tool]}" if tool in TABS else ""
     return f"{tool} has no window here; the page in the browser does its work{tab}. Type: {page}"
+
+
+def _display_config(arguments: Sequence[str]) -> str:
+    """The file that rviz's command line names, or nothing."""
+    parser = argparse.ArgumentParser(add_help=False)
+    parser.add_argument("-d", "--display-config", default="")
+    return parser.parse_known_args(arguments)[0].display_config
+
+
+def window(tool: str, program: str, arguments: Sequence[str]) -> int:
+    """Become Debian's `program` where there is a screen; otherwise as `main`."""
+    if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        os.execv(program, [program, *arguments])
+    return main(tool, arguments)
 
 
 def main(tool: str, arguments: Sequence[str]) -> int:
