@@ -3,6 +3,16 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 self=$(basename "$0" .sh)
 
+# $"..." follows the locale. Chinese is shown on machines, too, whose C library has no data of a Chinese locale.
+TEXTDOMAIN=courses-shell TEXTDOMAINDIR=$root/src/compat/terminal_language/src/terminal_language/locale
+translated() { cat; }  # what a program of ours wrote before devel/ was there
+spoken=${LC_ALL:-${LC_MESSAGES:-${LANG:-}}}
+case "$spoken" in C | POSIX) spoken= ;; *) spoken=${LANGUAGE:-$spoken} ;; esac
+if [[ $spoken == zh* ]]; then
+  export LC_ALL=C.UTF-8 LANGUAGE=zh_CN
+  translated() { PYTHONPATH=$root/src/compat/terminal_language/src python3 -m terminal_language; }
+fi
+
 say() { printf '%s\n' "$*"; }
 fail() { printf '%s: %s\n' "$self" "$1" >&2; exit "${failure_code:-1}"; }
 
@@ -51,5 +61,5 @@ choose_master() {
   port=$(python3 -c 'from run_session.launch import free_port; print(free_port())')
   export ROS_MASTER_URI=http://localhost:$port
   [ "$ROS_MASTER_URI" = "$usual" ] ||
-    say "Another ROS master is running on this machine. In each further terminal type: export ROS_MASTER_URI=$ROS_MASTER_URI"
+    say $"Another ROS master is running on this machine. In each further terminal type: export ROS_MASTER_URI=$ROS_MASTER_URI"
 }

@@ -24,4 +24,5 @@ mkdir -p "$root/out"
 SOURCE_DATE_EPOCH=$(stat -c %Y "$build/stage/DEBIAN/control") step pack "Packing" \
   dpkg-deb --root-owner-group -Zzstd -z10 --build "$build/stage" "$root/out/$file"
 rm -rf "$build"
-say "out/$file: $(($(stat -c %s "$root/out/$file") / 1000000)) MB, made in ${SECONDS} s. Next: sudo apt install ./out/$file"
+size=$(($(stat -c %s "$root/out/$file") / 1000000))
+say $"out/$file: $size MB, made in ${SECONDS} s. Next: sudo apt install ./out/$file"

@@ -5,12 +5,12 @@
 #
 # Exit code 0: all that is available is installed; 1: apt failed; 2: there is no such workspace.
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-python3 -c 'import catkin_pkg, rospkg, yaml' 2>/dev/null || fail "Debian's ROS is not installed yet: make setup"
+python3 -c 'import catkin_pkg, rospkg, yaml' 2>/dev/null || fail $"Debian's ROS is not installed yet: make setup"
 arguments=() workspace=$root
 for word in "$@"; do
   case $word in
     --simulate) arguments+=("$word") ;;
-    -*) fail "unknown option $word; there is --simulate" ;;
+    -*) fail $"unknown option $word; there is --simulate" ;;
     *) workspace=$word ;;
   esac
 done

@@ -10,7 +10,7 @@ if [ -n "${DISPLAY:-}" ]; then
   exec roslaunch racecar_description car_control.launch "$@"
 fi
 if ! [ -t 0 ]; then
-  echo "drive: there is no screen (DISPLAY) and no terminal to read keys from; run it in a terminal" >&2
+  echo $"drive: there is no screen (DISPLAY) and no terminal to read keys from; run it in a terminal" >&2
   exit 2
 fi
 mkdir -p "$root/out"
@@ -19,11 +19,11 @@ roslaunch racecar_description car_control.launch gui:=false keyboard:=false "$@"
 launched=$!
 trap 'kill -INT "$launched" 2> /dev/null || true; wait "$launched" || true' EXIT
 trap 'exit 130' INT TERM HUP
-echo "The car is starting; the nodes' output is in out/drive.log."
+echo $"The car is starting; the nodes' output is in out/drive.log."
 until rosservice list > /dev/null 2>&1; do
   if ! kill -0 "$launched" 2> /dev/null; then
     tail -n 5 "$root/out/drive.log" >&2
-    echo "drive: the car did not start; the full output is in out/drive.log" >&2
+    echo $"drive: the car did not start; the full output is in out/drive.log" >&2
     exit 2
   fi
   sleep 0.2

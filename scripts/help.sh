@@ -1,6 +1,37 @@
 #!/usr/bin/env bash
 # Lists the Makefile's commands.
+#
+#   scripts/help.sh
+#   scripts/help.sh --no-command WORD          says that make has no such command, and which is meant
+#   scripts/help.sh --no-option COMMAND WORD...   the same of an option; both for the Makefile
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-echo "usage: make COMMAND [OPTION=VALUE ...]"
-sed -n 's/^\([a-z-]*\):.*## \(.*\)/  \1\t\2/p' "$root/Makefile" | expand -t 23
-echo "Then, in each new terminal: source devel/setup.bash"
+
+# The Makefile's lines for that mark, in the locale's language: $"..." takes constants, so each is made one.
+list() {
+  local verb text
+  while IFS=$'\t' read -r verb text; do
+    eval "text=\$\"$text\""
+    printf '  %-20s %s\n' "$verb" "$text"
+  done < <(sed -n "s/^\([a-z-]*\):.*[^#]$1 \(.*\)/\1\t\2/p" "$root/Makefile")
+}
+# The word of a list that is most like another, as a question; nothing if none is.
+meant() {
+  local near
+  near=$(python3 -c 'import difflib, sys; print(*difflib.get_close_matches(sys.argv[1], sys.argv[2:], 1))' "$@" 2>/dev/null) || true
+  [ -z "$near" ] || printf $" is %s meant?" "$near"
+}
+case "${1:-}" in
+  --no-command)
+    mapfile -t verbs < <(sed -n 's/^\([a-z-]*\):.*## .*/\1/p' "$root/Makefile")
+    say $"make has no command $2;""$(meant "$2" "${verbs[@]}")"$" \`make\` alone lists them" ;;
+  --no-option)
+    mapfile -t options < <(sed -n "/^${2%% *}:/,/^$/p" "$root/Makefile" | grep -oE '\$\([A-Z_]+\)' | tr -d '$()' | sed 's/^WHERE$/WORKERS\nSCHEDULER/' | sort -u)
+    verb=$2 names=${*:3}
+    say $"make $verb has no option $names;""$(meant "${3%=}" "${options[@]}")"$" \`make\` alone lists the options of each command" ;;
+  *)
+    echo $"usage: make COMMAND [OPTION=VALUE ...]"
+    list '##'
+    echo $"For those who test or change this repository:"
+    list '###'
+    echo $"Then, in each new terminal: source devel/setup.bash" ;;
+esac

@@ -14,8 +14,8 @@ while (($#)); do
   case $1 in
     --empty) course=lane_empty ;;
     --method)
-      [ -f "$methods/${2:-}.py" ] || fail "no method '${2:-}' (METHOD=); there are: $(
-        cd "$methods" && printf '%s ' [!_]*.py | sed 's/\.py / /g; s/ $//')"
+      there=$(cd "$methods" && printf '%s ' [!_]*.py | sed 's/\.py / /g; s/ $//')
+      [ -f "$methods/${2:-}.py" ] || fail $"no method '${2:-}' (METHOD=); there are: $there"
       arguments+=(--follower "$2.py"); shift ;;
     *) arguments+=("$1") ;;
   esac

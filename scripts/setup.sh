@@ -6,6 +6,7 @@
 #   scripts/setup.sh --workers       also what the trials' WORKERS= and SCHEDULER= need (Dask); included in --tests
 #   scripts/setup.sh --learning      also what only the learning environments need (Gymnasium); included in --tests
 #   scripts/setup.sh --cpp           also build the lessons' C++ programs, from now on; included in --tests
+#   scripts/setup.sh --bashrc        also source the workspace in ~/.bashrc, for each new terminal
 #   scripts/setup.sh --build         build even if nothing has changed
 #   scripts/setup.sh --dependencies  everything but the build
 #
@@ -18,29 +19,30 @@ python_mb=1150  # measured: 830 installed, 250 in pip's cache and while it unpac
 build_mb=40     # measured: 8 with the packages of the first release
 
 state=$root/.setup venv=$root/.venv
-tests=no workers=no learning=no cpp=OFF force_build=no build=yes
+tests=no workers=no learning=no cpp=OFF force_build=no build=yes bashrc=no
 for option in "$@"; do
   case "$option" in
     --tests) tests=yes workers=yes learning=yes cpp=ON ;;
     --workers) workers=yes ;;
     --learning) learning=yes ;;
     --cpp) cpp=ON ;;
+    --bashrc) bashrc=yes ;;
     --build) force_build=yes ;;
     --dependencies) build=no ;;
-    *) fail "unknown option $option; there are --tests, --workers, --learning, --cpp, --build and --dependencies" ;;
+    *) fail $"unknown option $option; there are --tests, --workers, --learning, --cpp, --bashrc, --build and --dependencies" ;;
   esac
 done
 did=no
-step() { did=yes; say "Step $1 of 5: $2"; }
+step() { did=yes; say $"Step $1 of 5: $2"; }
 for part in logged machine debian python source_packages workspace; do . "$root/scripts/setup/$part.sh"; done
 
 check_machine
 mkdir -p "$state"
 exec 9<"$root"  # two setups at once would interfere with each other
-flock -n 9 || { say "Another setup is running in this folder: waiting for it."; flock 9; }
+flock -n 9 || { say $"Another setup is running in this folder: waiting for it."; flock 9; }
 mapfile -t missing < <(missing_packages)
 if [ ${#missing[@]} -gt 0 ] || ! venv_is_sound; then
-  step 1 "checking this machine"
+  step 1 $"checking this machine"
   [ ${#missing[@]} -eq 0 ] || check_rights
   check_disk $((debian_mb * ${#missing[@]} / $(wanted_packages | wc -l))) \
     $((build_mb + $(venv_is_sound && echo 0 || echo "$python_mb")))
@@ -49,4 +51,8 @@ debian_packages
 python_environment
 python_packages
 [ "$build" = no ] || build_workspace
-[ "$did" = yes ] && say "Set up in ${SECONDS} s." || say "Nothing to set up."
+[ "$did" = yes ] && say $"Set up in ${SECONDS} s." || say $"Nothing to set up."
+[ "$bashrc" = no ] || source_in_bashrc
+if [ "$did$build" = yesyes ] && ! grep -qsxF "$(bashrc_line)" "${HOME:-}/.bashrc"; then
+  say $"In each new terminal type: source $root/devel/setup.bash (make setup BASHRC=1 writes this line into ~/.bashrc)"
+fi

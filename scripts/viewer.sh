@@ -21,11 +21,11 @@ launched=$!
 page=
 trap 'kill -INT $launched $page 2> /dev/null || true; wait $launched $page || true' EXIT
 trap 'exit 130' INT TERM HUP
-echo "The course is starting; its nodes' output is in out/viewer.log. Ctrl-C ends both course and page."
+echo $"The course is starting; its nodes' output is in out/viewer.log. Ctrl-C ends both course and page."
 until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; do
   if ! kill -0 "$launched" 2> /dev/null; then
     tail -n 5 "$root/out/viewer.log" >&2
-    echo "viewer: the course did not start; the full output is in out/viewer.log" >&2
+    echo $"viewer: the course did not start; the full output is in out/viewer.log" >&2
     exit 2
   fi
   sleep 0.2

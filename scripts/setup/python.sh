@@ -8,17 +8,17 @@ venv_is_sound() {
 }
 python_environment() {
   ! venv_is_sound || return 0
-  step 3 "making the Python environment .venv"
+  step 3 $"making the Python environment .venv"
   rm -rf "$venv" "$state"/requirements* "$state/build-inputs"
   touch "$state/venv-unfinished"
-  logged venv /usr/bin/python3 -m venv --system-site-packages "$venv" || fail_with_log "python3 -m venv failed" venv
+  logged venv /usr/bin/python3 -m venv --system-site-packages "$venv" || fail_with_log $"python3 -m venv failed" venv
   echo "$venv $platform" >"$state/venv"
 }
 
 pip() { env -u PIP_USER -u PIP_TARGET -u PIP_PREFIX "$venv/bin/python3" -I -m pip "$@" --no-input --disable-pip-version-check --no-deps; }
 pip_failed() {
-  ! network_failed pip || fail "no network: pip cannot reach its package index (.setup/pip.log says more); connect and run this again"
-  fail_with_log "pip $1 failed" pip
+  ! network_failed pip || fail $"no network: pip cannot reach its package index (.setup/pip.log says more); connect and run this again"
+  fail_with_log $"pip $1 failed" pip
 }
 python_packages() {
   local file target
@@ -31,7 +31,7 @@ python_packages() {
     if [ "$file" = requirements-source.txt ]; then
       source_packages
     else
-      step 4 "installing the Python packages of ${lists#"$root"/}/$file"
+      step 4 $"installing the Python packages of ${lists#"$root"/}/$file"
       target=(--no-user)
       if [ "$file" = requirements-rosdep.txt ]; then target=(--target "$venv/rosdep" --upgrade); fi
       logged pip pip install "${target[@]}" --require-hashes --only-binary :all: -r "$lists/$file" || pip_failed install

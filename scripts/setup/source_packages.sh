@@ -1,6 +1,6 @@
 # Part of step 4: builds packages without a wheel for this platform from source, once for all clones of a user.
 
-build_minutes="about 5 minutes on two idle cores"
+build_minutes=$"about 5 minutes on two idle cores"
 build_needs_mb=900  # measured: source 430, build 250, wheel 150
 # The same on each release: Debian 13's setuptools uses these alone, Debian 12's adds them to Python's own.
 build_flags="-O2 -g0 -DNDEBUG -fno-strict-overflow"
@@ -13,9 +13,9 @@ source_packages() {
   wheels=$cache/ros1-driving-courses/wheels/$(wheels_key "$list")
   chmod go-w "$cache/ros1-driving-courses" "${wheels%/*}" 2>/dev/null || true
   if whole "$wheels"; then
-    step 4 "installing $names as built before ($wheels)"
+    step 4 $"installing $names as built before ($wheels)"
   else
-    step 4 "building $names from source, because there is no wheel ($build_minutes)"
+    step 4 $"building $names from source, because there is no wheel ($build_minutes)"
     build_wheels "$list" "$names"
     keep_wheels "$wheels" || wheels=$state/wheels
   fi
@@ -42,10 +42,10 @@ build_wheels() {
   local made=$state/wheel-build free
   free=$(free_mb "$root")
   [ "${free:-$build_needs_mb}" -ge "$build_needs_mb" ] ||
-    fail "not enough disk space: $root has $free MB free, building $2 needs $build_needs_mb MB"
+    fail $"not enough disk space: $root has $free MB free, building $2 needs $build_needs_mb MB"
   rm -rf "$made" "$state/wheels"
   mkdir -p "$made"
-  doing="building $2 ($build_minutes)" TMPDIR=$made CFLAGS=$c_flags CXXFLAGS=$build_flags logged pip \
+  doing=$"building $2 ($build_minutes)" TMPDIR=$made CFLAGS=$c_flags CXXFLAGS=$build_flags logged pip \
     pip wheel --no-cache-dir --no-build-isolation --no-binary :all: --require-hashes -r "$1" -w "$state/wheels" || pip_failed wheel
   (cd "$state/wheels" && sha256sum -- *.whl >SHA256SUMS)
   rm -rf "$made"
@@ -57,6 +57,6 @@ keep_wheels() {
     { whole "$1" || { cp -r "$state/wheels" "$part" 2>/dev/null && chmod -R go-w "$part" && whole "$part" &&
       rm -rf "$1" 2>/dev/null && mv -T "$part" "$1" 2>/dev/null; }; }; then return 0; fi
   rm -rf "$part"
-  say "  The built wheel cannot be kept in ${1%/*}: another clone will build it again."
+  say $"  The built wheel cannot be kept in ${1%/*}: another clone will build it again."
   return 1
 }

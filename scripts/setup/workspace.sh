@@ -9,14 +9,14 @@ build_inputs() {
 }
 build_workspace() {
   local told
-  told=$(python3 "$root/scripts/own_packages.py" "$root/src") || exit 1
+  told=$(python3 "$root/scripts/own_packages.py" "$root/src" 2>&1 | translated) || { printf '%s\n' "$told" >&2; exit 1; }
   if grep -qs '^CPP_LESSONS:BOOL=ON' "$root/build/CMakeCache.txt"; then cpp=ON  # built once, so keep them up to date
   elif [ "$cpp" = ON ]; then force_build=yes; fi
   rm -f "$state/build-inputs.now"  # owned by root if make was once run with sudo
   build_inputs >"$state/build-inputs.now"
   if [ "$force_build" = no ] && [ -f "$root/devel/setup.bash" ] && [ ! -e "$state/build-unfinished" ] &&
     cmp -s "$state/build-inputs.now" "$state/build-inputs"; then return 0; fi
-  step 5 "building the workspace"
+  step 5 $"building the workspace"
   [ -z "$told" ] || say "$told"
   # Left-overs of an interrupted build, another folder or a removed package would be used as if valid.
   # CMake sets its files' modes, which only their owner may do: in a container that is who built the image.
@@ -29,12 +29,12 @@ build_workspace() {
   ROS_LANG_DISABLE=genlisp PYTHONPATH=src/workspace_needs/src ROS_PACKAGE_PATH=src:/usr/share logged build \
     python3 src/workspace_needs/scripts/catkin_make --no-color "-DPYTHON_EXECUTABLE=$venv/bin/python3" "-DPython_EXECUTABLE=$venv/bin/python3" \
     "-DCPP_LESSONS:BOOL=$cpp" ||
-    fail_with_cause "catkin_make failed"
-  grep -a ' is left out: ' "$state/build.log" || true
+    fail_with_cause $"catkin_make failed"
+  grep -a ' is left out: ' "$state/build.log" | translated || true
   [ "$cpp" = ON ] || cpp_stand_ins
   if [ -d src/navigation/nav_algorithms ] && [ ! -e src/navigation/CATKIN_IGNORE ]; then
     PYTHONPATH=src/navigation/nav_algorithms/src logged compile "$venv/bin/python3" -m nav_algorithms.warm_up ||
-      fail_with_log "compiling the inner loops of navigation failed" compile
+      fail_with_log $"compiling the inner loops of navigation failed" compile
   fi
   mv "$state/build-inputs.now" "$state/build-inputs"
   rm -f "$state/build-unfinished"
@@ -55,3 +55,13 @@ same_packages() {
   [ -f "$state/build-inputs" ] && diff -q <(packages_in "$state/build-inputs") <(packages_in "$state/build-inputs.now") >/dev/null
 }
 packages_in() { head -1 "$1"; awk '/package.xml$/ {print $2}' "$1"; }
+# What makes each new terminal one of this workspace; of several clones the last one that asked for it.
+bashrc_mark="# ros1-driving-courses"
+bashrc_line() { printf '%s' "source $root/devel/setup.bash  $bashrc_mark"; }
+source_in_bashrc() {
+  local file=${HOME:-}/.bashrc
+  if grep -qsxF "$(bashrc_line)" "$file"; then say $"$file has this line already: source $root/devel/setup.bash"; return; fi
+  [ ! -e "$file" ] || sed -i --follow-symlinks "/$bashrc_mark\$/d" "$file"
+  bashrc_line | cat - <(echo) >>"$file" || fail $"$file cannot be written: type in each new terminal: source $root/devel/setup.bash"
+  say $"Written into $file: source $root/devel/setup.bash. It holds for each new terminal."
+}

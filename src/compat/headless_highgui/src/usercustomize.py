@@ -1,6 +1,7 @@
 """Python runs this file at its start: it amends a few modules when a script imports them.
 
 cv2 gets its windows, and some modules the names that they had when a script was written.
+Programs of ours print in the language of the locale.
 """
 
 import collections
@@ -82,6 +83,16 @@ def run_hidden():
         hidden.loader.exec_module(module_from_spec(hidden))
 
 
+def choose_language():
+    """Let our programs print in the language of the locale, if terminal_language is there."""
+    try:
+        from terminal_language.wanted import start
+    except ImportError:  # it is off, by a CATKIN_IGNORE
+        return
+    start()
+
+
+choose_language()
 sys.meta_path.insert(0, Watch)
 watch_standard()
 if __name__ == "usercustomize":

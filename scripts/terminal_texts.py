@@ -1,0 +1,224 @@
+#!/usr/bin/env python3
+"""Collects what our programs print, for the catalogues of src/compat/terminal_language.
+
+    terminal_texts.py            adds new texts to the .po files and writes the .mo files;
+                                 texts that are gone stay as comments at the end
+    terminal_texts.py --compile  writes the .mo files only
+
+Needs Debian's gettext. A text with values in it has {0}, {1} ... in the catalogue.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+LOCALES = ROOT / "src/compat/terminal_language/src/terminal_language/locale"
+KEPT = LOCALES / "kept.txt"  # upstream's sentences and texts that no terminal shows
+LANGUAGE = "zh_CN"
+# Programs for those who work on this repository, which print English.
+INSTRUMENTS = re.compile(
+    r"src/sim/sim_bench/|src/compat/terminal_language/|src/trial_worlds/"
+    r"|src/.*/(training|world_maker|course_maker|making|test)/"
+    r"|src/.*/(setup|conftest|(make|draw|train)_\w+)\.py|src/sim/bullet_sim/(scripts|examples)/"
+    r"|src/sim/driving_courses/examples/|src/evaluation/src/evaluation/\w+/trial\.py")
+# Parts of the page's server, whose texts only the page shows.
+PAGE = re.compile(
+    r"src/sim/sim_viewer/src/sim_viewer/"
+    r"(rviz/(?!config)|tools/|(?!node|options|restart|server|guard)\w+\.py)")
+SCRIPTS = ("scripts/own_packages.py", "scripts/build_cause.py")  # setup runs them
+WORD = re.compile(r"(?<![\w/.-])[A-Za-z]?[a-z']+(?![\w/-]|\.[a-z])")
+DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+FORMAT = re.compile(r"%(?:\(\w+\))?[-+0]*[0-9]*(?:\.[0-9]+)?[sdrfgix]|\{[^{} ]*\}")
+PLACE = re.compile(r"\{\d+\}")
+# Of Python's argparse, which has no Chinese.
+OF_ARGPARSE = (
+    "usage: {0}", "positional arguments:", "options:", "show this help message and exit",
+    "{0}: error: {1}", "the following arguments are required: {0}", "unrecognized arguments: {0}",
+    "argument {0}: {1}", "invalid choice: {0} (choose from {1})", "invalid {0} value: {1}",
+    "expected one argument", "expected at least one argument", "expected {0} arguments",
+    "not allowed with argument {0}")
+
+
+def texts_of(source: str) -> Iterator[str]:
+    """The texts in a Python source that may reach a terminal, a line each.
+
+    What is printed, logged or raised there counts if it has a word and a space; every other string
+    if it has three words, since it may be returned to who does so. Docstrings are none.
+    """
+    tree = ast.parse(source)
+    docstrings = {id(node.body[0].value) for node in ast.walk(tree)
+                  if isinstance(node, DOCUMENTED)
+                  and node.body and isinstance(node.body[0], ast.Expr)}
+    shown = {id(string) for node in ast.walk(tree) if is_door(node) for string in _strings(node)}
+    for node in _strings(tree):
+        for line in sentence(node).split("\n") if id(node) not in docstrings else ():
+            words = len(WORD.findall(PLACE.sub("", line)))
+            if words >= (1 if id(node) in shown else 3) and " " in line.strip() and is_text(line):
+                yield line.strip()
+
+
+def is_door(node: ast.AST) -> bool:
+    """Whether a statement or call shows its texts to somebody."""
+    if isinstance(node, ast.Raise):
+        return True
+    called = node.func if isinstance(node, ast.Call) else None
+    name = getattr(called, "attr", getattr(called, "id", ""))
+    return name.startswith("log") or name in ("print", "exit", "error", "info", "warning", "input")
+
+
+def _strings(node: ast.AST) -> Iterator[ast.expr]:
+    """Strings below a node, sums of strings and others as one, and those within their values."""
+    if isinstance(node, ast.JoinedStr) or _is_sum(node):
+        yield node
+        for part in _parts(node):
+            if not isinstance(part, ast.Constant):
+                yield from _strings(part)
+    elif isinstance(node, ast.Constant):
+        if isinstance(node.value, str):
+            yield node
+    else:
+        for child in ast.iter_child_nodes(node):
+            yield from _strings(child)
+
+
+def _is_sum(node: ast.AST) -> bool:
+    return (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add)
+            and any(isinstance(part, ast.Constant) and isinstance(part.value, str)
+                    for part in _parts(node)))
+
+
+def _parts(node: ast.AST) -> list[ast.AST]:
+    """Constants and values of an f-string, or of a sum."""
+    if isinstance(node, ast.JoinedStr):
+        return [part for value in node.values for part in _parts(value)]
+    if isinstance(node, ast.FormattedValue):
+        return [node.value]
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
+        return _parts(node.left) + _parts(node.right)
+    return [node]
+
+
+def sentence(node: ast.expr) -> str:
+    """A string with {0}, {1} ... in place of its values."""
+    if isinstance(node, ast.Constant):
+        text = FORMAT.sub("{}", node.value).replace("%%", "%")
+    else:
+        text = "".join(part.value if isinstance(part, ast.Constant) and isinstance(part.value, str)
+                       else "{}" for part in _parts(node))
+    pieces = text.split("{}")
+    return "".join(f"{piece}{{{at}}}" for at, piece in enumerate(pieces[:-1])) + pieces[-1]
+
+
+def is_text(text: str) -> bool:
+    """Whether a string is words rather than a pattern, a piece of a file or of a program."""
+    return not NO_TEXT.search(text.strip())
+
+
+NO_TEXT = re.compile(
+    r"^<[!?/]|^(\{\d+\} *)?<\w+( name=\{0\})?( [\w:]+=\"|>?$|>[^,]*</)"
+    r"|[\\|^]|\w\[\w|^import |^# |^/|^~")
+
+
+def python_texts() -> dict[str, list[str]]:
+    """Each text that a program prints, and the files that it is in."""
+    found: dict[str, list[str]] = {text: ["Python's argparse"] for text in OF_ARGPARSE}
+    listed = subprocess.run(
+        ["git", "-C", str(ROOT), "ls-files", "-co", "--exclude-standard", "src"],
+        capture_output=True, text=True, check=True).stdout.split("\n")
+    for name in sorted({*listed, *SCRIPTS}):
+        path = ROOT / name
+        if INSTRUMENTS.match(name) or PAGE.match(name) or path.is_symlink() or not path.is_file():
+            continue
+        with path.open("rb") as file:
+            first = file.readline(80)
+        if name.endswith(".py") or (first.startswith(b"#!") and b"python" in first):
+            for text in texts_of(path.read_text(encoding="utf-8")):
+                if name not in found.setdefault(text, []):
+                    found[text].append(name)
+    for text in kept():
+        found.pop(text, None)
+    return found
+
+
+def kept() -> list[str]:
+    """Texts that stay English."""
+    lines = KEPT.read_text(encoding="utf-8").split("\n")
+    return [line for line in lines if line and not line.startswith("#")]
+
+
+def shell_texts() -> dict[str, list[str]]:
+    """The same of the scripts: what stands there as $"...", and the Makefile's list of commands."""
+    found: dict[str, list[str]] = {}
+    for path in (*sorted(ROOT.glob("scripts/*.sh")), *sorted(ROOT.glob("scripts/setup/*.sh"))):
+        told = subprocess.run(["bash", "--dump-po-strings", str(path)], capture_output=True,
+                              text=True, check=True).stdout
+        for text in re.findall(r'^msgid "(.*)"$', told, re.MULTILINE):
+            found.setdefault(unquoted(text), []).append(str(path.relative_to(ROOT)))
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    for text in re.findall(r"^[a-z-]+:.*?##+ (.*)", makefile, re.MULTILINE):
+        found.setdefault(text, []).append("Makefile")
+    return found
+
+
+def quoted(text: str) -> str:
+    """As .po files write it."""
+    return text.replace("\\", "\\\\").replace('"', '\\"').replace("\t", "\\t")
+
+
+def unquoted(text: str) -> str:
+    return re.sub(r"\\(.)", lambda found: {"n": "\n", "t": "\t"}.get(found[1], found[1]), text)
+
+
+def template(found: dict[str, list[str]]) -> str:
+    """A .pot file."""
+    head = 'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\n"\n'
+    return head + "".join(
+        f'\n#: {" ".join(name.replace(" ", "-") for name in files)}\n'
+        f'msgid "{quoted(text)}"\nmsgstr ""\n'
+        for text, files in sorted(found.items(), key=lambda each: (each[1][0], each[0])))
+
+
+def merge(domain: str, found: dict[str, list[str]]) -> None:
+    """Bring a .po file up to date; what it has stays."""
+    path = LOCALES / f"{domain}.po"
+    with tempfile.NamedTemporaryFile("w", suffix=".pot", encoding="utf-8") as pot:
+        pot.write(template(found))
+        pot.flush()
+        if not path.exists():
+            path.write_text(template({}), encoding="utf-8")
+        subprocess.run(["msgmerge", "--quiet", "--no-fuzzy-matching", "--no-wrap", "--update",
+                        "--backup=off", str(path), pot.name], check=True)
+
+
+def compile_catalogue(domain: str, folder: Path) -> None:
+    """Write a .mo file into a folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    subprocess.run(["msgfmt", "--no-hash", str(LOCALES / f"{domain}.po"), "-o",
+                    str(folder / f"{domain}.mo")], check=True)
+
+
+DOMAINS = {"courses": python_texts, "courses-shell": shell_texts}
+
+
+def main() -> int:
+    """Returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--compile", action="store_true", help="write the .mo files only")
+    only_compile = parser.parse_args().compile
+    for domain, collect in DOMAINS.items():
+        if not only_compile:
+            merge(domain, collect())
+        compile_catalogue(domain, LOCALES / LANGUAGE / "LC_MESSAGES")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

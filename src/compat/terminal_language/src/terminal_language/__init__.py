@@ -1,0 +1,1 @@
+"""What our programs print on a terminal, in the language of the locale (README.md)."""

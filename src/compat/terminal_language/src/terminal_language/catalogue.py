@@ -1,0 +1,105 @@
+"""Looks texts up in a gettext catalogue, also those that have their values in them already."""
+
+from __future__ import annotations
+
+import gettext
+import re
+from functools import cached_property
+from pathlib import Path
+
+DOMAIN = "courses"
+LOCALES = Path(__file__).parent / "locale"
+PLACE = re.compile(r"\{(\d+)\}")
+# What may stand around a text: line ends, indents, escape codes, rospy's "[WARN] [12.3, 4.5]: ".
+AROUND = re.compile(r"((?:\s|\x1b\[[\d;]*[A-Za-z])*(?:\[\w+\] \[[\d., ]+\]: )?)(.*?)"
+                    r"((?:\s|\x1b\[[\d;]*[A-Za-z])*)", re.DOTALL)
+JOINTS = re.compile(r"(: |; )")
+MOST_PARTS = 8  # of a text between colons and semicolons; more are data, not a message
+DEPTH = 4  # of texts within texts
+
+
+class Sentence:
+    """An English text with {0}, {1} ... in place of its values, and its translation."""
+
+    def __init__(self, english: str, translation: str) -> None:
+        self._parts = PLACE.split(english)
+        self.translation = translation
+        self.longest = max(self._parts[::2], key=len)
+        self.weight = sum(map(len, self._parts[::2]))
+
+    @cached_property
+    def _pattern(self) -> re.Pattern[str]:
+        parts = (re.escape(part) if at % 2 == 0 else "(.*?)"
+                 for at, part in enumerate(self._parts))
+        return re.compile("".join(parts), re.DOTALL)
+
+    def values(self, text: str) -> dict[int, str] | None:
+        """The values by number that make this sentence the text, or None."""
+        found = self.longest in text and self._pattern.fullmatch(text)
+        if not found:
+            return None
+        return dict(zip(map(int, self._parts[1::2]), found.groups(), strict=True))
+
+    def filled(self, values: dict[int, str]) -> str:
+        """The translation with these values."""
+        return PLACE.sub(lambda place: values[int(place[1])], self.translation)
+
+
+class Catalogue:
+    """The translations of one language; texts that it does not know stay as they are."""
+
+    def __init__(self, messages: dict[str, str]) -> None:
+        self._exact = {english: text for english, text in messages.items() if english and text}
+        sentences = (Sentence(*both) for both in self._exact.items() if PLACE.search(both[0]))
+        self._sentences = sorted(sentences, key=lambda sentence: -sentence.weight)
+
+    def translate(self, text: str) -> str:
+        """The text in the catalogue's language, as a whole or line by line."""
+        whole = self._around(text)
+        if whole is not None:
+            return whole
+        return "".join(line if (found := self._around(line)) is None else found
+                       for line in text.splitlines(keepends=True))
+
+    def _around(self, text: str, depth: int = DEPTH) -> str | None:
+        before, inner, after = AROUND.fullmatch(text).groups()
+        found = self._message(inner, depth) if inner else None
+        return None if found is None else before + found + after
+
+    def _message(self, text: str, depth: int) -> str | None:
+        """The translation of the text, or of its parts between colons and semicolons."""
+        found = self._sentence(text, depth)
+        parts = JOINTS.split(text)
+        if found is not None or not 1 < len(parts) < 2 * MOST_PARTS:
+            return found
+        told, at, any_found = "", 0, False
+        while at < len(parts):
+            for end in range(len(parts), at, -2):
+                found = self._sentence("".join(parts[at:end]), depth)
+                if found is not None:
+                    break
+            any_found = any_found or found is not None
+            told += parts[at] if found is None else found
+            told += parts[end] if end < len(parts) else ""
+            at = end + 1
+        return told if any_found else None
+
+    def _sentence(self, text: str, depth: int) -> str | None:
+        if text in self._exact or depth == 0:
+            return self._exact.get(text)
+        for sentence in self._sentences:
+            values = sentence.values(text)
+            if values is not None:
+                return sentence.filled({number: self._around(value, depth - 1) or value
+                                        for number, value in values.items()})
+        return None
+
+
+def read_catalogue(language: str) -> Catalogue:
+    """The catalogue of a language of LOCALES, such as zh_CN.
+
+    Raises: OSError: there is none.
+    """
+    translations = gettext.translation(DOMAIN, LOCALES, [language])
+    return Catalogue({key: text for key, text in translations._catalog.items()
+                      if isinstance(key, str)})

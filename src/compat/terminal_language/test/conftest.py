@@ -1,0 +1,6 @@
+"""Lets pytest import the package from the source folder."""
+
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "src"))

@@ -1,0 +1,84 @@
+"""Which language is wanted, how a text is found in a catalogue, and what a stream writes."""
+
+import io
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+from terminal_language.catalogue import Catalogue
+from terminal_language.streams import TranslatedStream
+from terminal_language.wanted import home, is_ours, wanted_language
+
+SOURCE = pathlib.Path(__file__).resolve().parents[1] / "src"
+START = SOURCE.parents[1] / "headless_highgui/src"  # has usercustomize.py
+CATALOGUE = Catalogue({
+    "": "header", "the line is lost": "线丢了", "no such file": "没有这个文件",
+    "{0} has no {1}": "{0} 没有{1}", "{0} has no joint called {1}": "{0} 没有名为 {1} 的关节",
+    "give one of: {0}": "请从中选一个：{0}", "first {0}, then {1}": "{1} 之前先 {0}",
+    "not translated yet": ""})
+
+
+@pytest.mark.parametrize(("environment", "language"), [
+    ({"LANG": "zh_CN.UTF-8"}, "zh_CN"), ({"LANG": "zh_TW.UTF-8"}, "zh_CN"),
+    ({"LC_ALL": "C.UTF-8", "LANGUAGE": "zh_CN"}, "zh_CN"), ({"LANGUAGE": "zh_CN:en"}, "zh_CN"),
+    ({"LANG": "zh_CN.UTF-8", "LANGUAGE": "en"}, None), ({"LC_ALL": "C", "LANGUAGE": "zh_CN"}, None),
+    ({"LANG": "zh_CN.UTF-8", "LC_ALL": "en_US.UTF-8"}, None),
+    ({"LANG": "en_US.UTF-8", "LC_MESSAGES": "zh_CN.UTF-8"}, "zh_CN"),
+    ({"LANG": "de_DE.UTF-8"}, None), ({}, None), ({"LC_ALL": "", "LANG": "zh"}, "zh_CN")])
+def test_the_locale_decides(environment, language):
+    assert wanted_language(environment) == language
+
+
+@pytest.mark.parametrize(("words", "ours"), [
+    (["python3", f"{home()}/src/evaluation/scripts/course_run.py", "-c"], True),
+    (["python3", "-u", f"{home()}/devel/lib/x/y.py"], True),
+    (["python3", "/usr/bin/rostopic"], False),
+    (["python3", "/home/me/catkin_ws/src/a/scripts/b.py"], False), (["python3", "-c", "x"], False),
+    (["python3"], False), (["python3", "-m", "pytest"], False),
+    (["python3", "-m", "terminal_language"], True)])
+def test_only_our_programs_are_translated(words, ours):
+    assert is_ours(words) is ours
+
+
+@pytest.mark.parametrize(("english", "chinese"), [
+    ("the line is lost", "线丢了"),
+    ("\r\x1b[33m[WARN] [12.3, 4.5]: the line is lost\x1b[0m\n",
+     "\r\x1b[33m[WARN] [12.3, 4.5]: 线丢了\x1b[0m\n"),
+    ("arm has no grip", "arm 没有grip"), ("arm has no joint called a b", "arm 没有名为 a b 的关节"),
+    ("check: a.world: no such file; give one of: b, c",
+     "check: a.world: 没有这个文件; 请从中选一个：b, c"),
+    ("give one of: the line is lost", "请从中选一个：线丢了"), ("first a, then b", "b 之前先 a"),
+    ("the line is lost\nx\n  no such file\n", "线丢了\nx\n  没有这个文件\n"),
+    ("not translated yet", "not translated yet"), ("", ""), ("\n", "\n"), ("what?", "what?")])
+def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
+    assert CATALOGUE.translate(english) == chinese
+
+
+def test_data_with_many_colons_are_written_as_they_are():
+    data = "; ".join(f"{at}: the line" for at in range(2000))
+    assert CATALOGUE.translate(data) == data
+
+
+def test_a_stream_is_otherwise_what_it_was():
+    under = io.StringIO()
+    stream = TranslatedStream(under, CATALOGUE.translate)
+    print("the line is lost", 3, sep=": ", file=stream)
+    stream.writelines(["no such file", "\n"])
+    assert under.getvalue() == "线丢了: 3\n没有这个文件\n"
+    assert stream.write("no such file") == 12 and stream.isatty() is False
+
+
+@pytest.mark.parametrize(("more", "said"), [
+    ({"LANG": "zh_CN.UTF-8"}, "用法"), ({"LC_ALL": "C.UTF-8", "LANGUAGE": "zh"}, "用法"),
+    ({"LANG": "C.UTF-8"}, "usage"),
+    ({"LANG": "zh_CN.UTF-8", "PYTHONIOENCODING": "ascii"}, "usage")])
+def test_a_program_of_ours_starts_in_the_language_of_the_locale(more, said):
+    base = {name: value for name, value in os.environ.items()
+            if name not in ("LANG", "LANGUAGE", "LC_ALL", "LC_MESSAGES")}
+    done = subprocess.run(
+        [sys.executable, SOURCE.parents[3] / "scripts/terminal_texts.py", "--help"], text=True,
+        encoding="utf-8", capture_output=True, check=True,
+        env={**base, "PYTHONPATH": f"{START}:{SOURCE}:{base.get('PYTHONPATH', '')}", **more})
+    assert done.stdout.startswith(said), done.stdout

@@ -1,0 +1,122 @@
+"""Every text of the terminal exists in Chinese, with the same values, and compiled."""
+
+import gettext
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "scripts"))
+import terminal_texts  # noqa: E402
+
+VALUE = {"courses": r"\{\d+\}",
+         "courses-shell": r"\$\{\w+|\$\w+|\$\([^)]*\)|%s|`[^`]*`|\[(?!OPTION)[A-Z_]+="}
+
+
+def catalogue(path: Path) -> dict[str, str]:
+    """A .mo file's texts and translations."""
+    with path.open("rb") as file:
+        found = gettext.GNUTranslations(file)._catalog
+    return {english: text for english, text in found.items() if english}
+
+
+def shipped(domain: str) -> dict[str, str]:
+    folder = terminal_texts.LOCALES / terminal_texts.LANGUAGE / "LC_MESSAGES"
+    return catalogue(folder / f"{domain}.mo")
+
+
+@pytest.mark.parametrize("domain", terminal_texts.DOMAINS)
+def test_every_text_has_a_chinese_translation(domain: str) -> None:
+    texts = terminal_texts.DOMAINS[domain]()
+    missing = [f"{files[0]}: {text}" for text, files in texts.items()
+               if not shipped(domain).get(text)]
+    assert not missing, ("python3 scripts/terminal_texts.py adds these to the .po file, "
+                         "where each needs its Chinese:\n" + "\n".join(missing))
+
+
+@pytest.mark.parametrize("domain", terminal_texts.DOMAINS)
+def test_a_translation_has_the_same_values(domain: str) -> None:
+    wrong = [f"{english}\n  {chinese}" for english, chinese in shipped(domain).items()
+             if set(re.findall(VALUE[domain], english)) != set(re.findall(VALUE[domain], chinese))]
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("domain", terminal_texts.DOMAINS)
+def test_the_compiled_catalogue_is_that_of_the_po_file(domain: str, tmp_path: Path) -> None:
+    terminal_texts.compile_catalogue(domain, tmp_path)
+    assert catalogue(tmp_path / f"{domain}.mo") == shipped(domain), \
+        "python3 scripts/terminal_texts.py --compile"
+
+
+def test_what_is_a_text_of_a_program() -> None:
+    source = '''"""No docstring of it."""
+def f(a):
+    """Nor this one here."""
+    print("one line %s and\\nanother line {a} of it" % a)
+    raise ValueError(f"{a:.2f} is not {'the wrong value here' if a else 1}, 50 % off")
+    return "share/of/a/path", "<!-- a b c d", "two words", "the first words: " + ", ".join(a)
+'''
+    assert set(terminal_texts.texts_of(source)) == {
+        "one line {0} and", "another line {1} of it", "{0} is not {1}, 50 % off",
+        "the wrong value here", "the first words: {0}"}
+
+
+def said(command: list[str], **environment: str) -> str:
+    base = {name: value for name, value in os.environ.items() if name not in (
+        "LANG", "LANGUAGE", "LC_ALL", "LC_MESSAGES", "MAKELEVEL", "MAKEFLAGS", "MFLAGS")}
+    done = subprocess.run(command, cwd=ROOT, env=base | environment, text=True, encoding="utf-8",
+                          capture_output=True, check=False)
+    return done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(("environment", "word"), [
+    ({"LANG": "zh_CN.UTF-8"}, "没有选项"), ({"LC_ALL": "zh_CN.UTF-8"}, "没有选项"),
+    ({"LC_ALL": "C.UTF-8", "LANGUAGE": "zh_CN"}, "没有选项"), ({"LANGUAGE": "zh"}, "没有选项"),
+    ({"LANG": "zh_CN.UTF-8", "LC_ALL": "C"}, "unknown option"), ({}, "unknown option"),
+    ({"LANG": "en_US.UTF-8"}, "unknown option"),
+    ({"LANG": "zh_CN.UTF-8", "LANGUAGE": "en"}, "unknown option")])
+def test_the_scripts_follow_the_locale(environment: dict[str, str], word: str) -> None:
+    last = said(["scripts/setup.sh", "--x"], **environment).splitlines()[-1]
+    assert last.startswith(f"setup: {word}")
+
+
+@pytest.mark.parametrize(("words", "english", "chinese"), [
+    ("corse", "make has no command corse; is course meant?", "是不是想输入 course？"),
+    ("course LAP=2", "make course has no option LAP=; is LAPS meant?", "是不是想输入 LAPS？"),
+    ("mark WORKER=2", "mark has no option WORKER=; is WORKERS meant?", "是不是想输入 WORKERS？"),
+    ("zzz", "make has no command zzz; `make` alone lists them", "单独输入 `make` 会列出所有命令")])
+def test_make_names_the_nearest_command_and_option(words: str, english: str, chinese: str) -> None:
+    assert english in said(["make", *words.split()])
+    assert chinese in said(["make", *words.split()], LANGUAGE="zh_CN", LC_ALL="C.UTF-8")
+
+
+def test_make_lists_what_a_learner_types_first() -> None:
+    learners, developers = said(["make"]).split("For those who test or change this repository:")
+    def listed(text: str) -> set[str]:
+        return set(re.findall(r"^  ([a-z-]+)", text, re.MULTILINE))
+
+    assert {"setup", "course", "race", "viewer", "drive", "mark"} <= listed(learners)
+    assert {"fuzz", "chaos", "soak", "mutants", "bench", "track-trials"} <= listed(developers)
+    assert not listed(learners) & listed(developers)
+    assert all(ord(max(line)) > 0x3000 for line in said(["make"], LANG="zh_CN.UTF-8").splitlines())
+
+
+def test_setup_writes_the_line_that_sources_into_bashrc(tmp_path: Path) -> None:
+    def typed() -> tuple[int, str, list[str]]:
+        done = subprocess.run(
+            ["bash", "-c", '. scripts/common.sh; . scripts/setup/workspace.sh; source_in_bashrc'],
+            cwd=ROOT, env=os.environ | {"HOME": str(tmp_path)}, text=True, capture_output=True,
+            check=False)
+        return done.returncode, done.stdout, (tmp_path / ".bashrc").read_text().splitlines()
+
+    (tmp_path / ".bashrc").write_text(
+        "alias l=ls\nsource /gone/devel/setup.bash  # ros1-driving-courses\n")
+    line = f"source {ROOT}/devel/setup.bash  # ros1-driving-courses"
+    code, out, lines = typed()
+    assert (code, lines) == (0, ["alias l=ls", line]) and out.startswith("Written into ")
+    code, out, lines = typed()
+    assert (code, lines) == (0, ["alias l=ls", line]) and "has this line already" in out
