@@ -21,7 +21,7 @@ ESTIMATE = ("found = cv2.aruco.ArucoDetector(d).detectMarkers(image)[0]\n"
 SCRIPTS = {  # code: what it prints, the new form
     "import numpy as np; print(np.float(3))": ("3.0", "numpy.float is old: write float"),
     "import numpy as np; print(np.zeros(1, dtype=np.int))": ("[0]", "write int"),
-    "from numpy import bool as b; print(b)": ("<class 'bool'>", "write bool"),
+    "from numpy import object as o; print(o)": ("<class 'object'>", "write object"),
     "import numpy as np; print(np.asscalar(np.array([4])))": ("4", "write array.item()"),
     "from collections import Iterable; print(isinstance([], Iterable))": (
         "True", "write collections.abc.Iterable"),
