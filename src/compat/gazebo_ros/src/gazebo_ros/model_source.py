@@ -1,5 +1,6 @@
 """Where spawn_model takes its XML from, with upstream's message for each way that can fail."""
 
+import os
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -99,7 +100,9 @@ def _read(options) -> str | bytes:
 def _from_file(name: str) -> bytes:
     path = Path(name)
     if not path.exists():
-        raise NoSuchFileError(f"Error: specified file {name} does not exist")
+        meant = os.path.expanduser(os.path.expandvars(name))
+        advice = "" if meant == name else f"; ~ and $ are not expanded here: write {meant}"
+        raise NoSuchFileError(f"Error: specified file {name} does not exist{advice}")
     if not path.is_file():
         raise NoSuchFileError(f"Error: specified file {name} is not a file")
     try:
