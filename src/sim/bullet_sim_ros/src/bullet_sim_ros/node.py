@@ -18,7 +18,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources, load_world
 from bullet_sim.physics.parameter_bounds import possible_physics
 from bullet_sim.world import World
-from bullet_sim_ros import names
+from bullet_sim_ros import names, topic_faults
 from bullet_sim_ros.lockstep import split
 from bullet_sim_ros.log_bridge import forward_core_log
 from bullet_sim_ros.metrics import MetricsTopic
@@ -44,6 +44,7 @@ def open_network(simulation: Simulation, resources: Resources, parameters: NodeP
     MetricsTopic(simulation)
     simulation.each_turn.append(SceneTopic(simulation.world).update)
     offer_services(simulation, resources)
+    topic_faults.watch(simulation.senders)
 
 
 # s: the loop and the drawing thread share the GIL; Python's default, 5 ms, is a third of a frame.

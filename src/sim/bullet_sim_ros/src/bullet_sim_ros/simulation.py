@@ -42,6 +42,7 @@ class Simulation:
         self._services = SharedByPlugins(
             world, self.mailbox, self.scheduler, self._drawing, self.lockstep
         )
+        self.senders = self._services.senders
         self._plugins: dict[str, list[PluginContext]] = {}
         world.each_removal.append(self._close_plugins)
         self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10)

@@ -15,6 +15,8 @@ from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.registry import Controller
 from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
 
+STARTING = 5.0  # s of simulated time from loading, in which a spawner starts the controller
+
 log = logging.getLogger("bullet_sim.control")
 
 
@@ -27,6 +29,7 @@ class MobileBaseController(Controller):
         self.base = base
         self.set_publish_rate(p.number("publish_rate", 50.0))
         self._running = False
+        self._was_running, self._loaded = False, context.world_time()
         self._complained: set[str] = set()
         self._alone = not p.flag("allow_multiple_cmd_vel_publishers", True)
         self.odometry = OdometryOutput(
@@ -42,10 +45,16 @@ class MobileBaseController(Controller):
 
     def subscribe(self, topic: str, kind: type,
                   command: Callable[..., Callable[[], None] | None]) -> rospy.Subscriber:
-        """`command(message)` returns a function for the loop; refuses messages while stopped."""
+        """`command(message)` returns a function for the loop; refuses messages while stopped.
+
+        One that comes between loading and starting is refused without a word: a driver may start
+        before the spawner is done.
+        """
         def take(message) -> Callable[[], None] | None:
             if not self._running:
-                self._complain(f"{topic}: Can't accept new commands. Controller is not running.")
+                if self._was_running or self.context.world_time() - self._loaded > STARTING:
+                    self._complain(f"{topic}: Can't accept new commands. "
+                                   "Controller is not running.")
                 return None
             return command(message)
 
@@ -54,7 +63,7 @@ class MobileBaseController(Controller):
     def start(self, time: float) -> None:
         """Accept commands, starting from standstill."""
         self.base.start(time)
-        self._running, self._complained = True, set()
+        self._running, self._was_running, self._complained = True, True, set()
 
     def update(self, time: float, period: float) -> None:
         """Drive, and publish odometry when it is due."""

@@ -121,6 +121,7 @@ class PluginContext(PluginScope):
         answers = resolved in lockstep.topics
 
         def receive(message) -> None:
+            self.services.senders.note(resolved, message)
             function = take(message)
             if function is not None:
                 self.services.mailbox.post(function)

@@ -8,6 +8,7 @@ from bullet_sim_ros.drawing import DrawingThread
 from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.scheduler import Scheduler
+from bullet_sim_ros.topic_faults import Senders
 
 
 class SharedByPlugins:
@@ -20,6 +21,7 @@ class SharedByPlugins:
         self.scheduler = scheduler
         self.drawing = drawing
         self.lockstep = lockstep
+        self.senders = Senders()
         self.warned: set[tuple[str, str]] = set()  # unknown plugins: model, file name
         self._broadcaster: tf2_ros.TransformBroadcaster | None = None
 

@@ -1,0 +1,174 @@
+"""Names what is wrong with who sends and who hears: the faults that a learner cannot see.
+
+Two nodes that drive one robot, a command on a topic that nobody hears, an image that nobody
+publishes. Each is one warning once it has lasted for PATIENCE, in wall time.
+"""
+
+import logging
+import threading
+import time
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+from typing import Any, NamedTuple
+
+import rosgraph
+import rospy
+from rosgraph.masterapi import MasterException
+
+log = logging.getLogger("bullet_sim.topics")
+
+PATIENCE = 5.0  # s that a fault lasts before it is said
+LOOK = 1.0      # s between two looks
+RECENT = 1.0    # s; who has sent within this time still drives
+AGAIN = 60.0    # s until a fault that came back is said again
+COMMANDS = {"geometry_msgs/Twist", "geometry_msgs/Wrench", "std_msgs/Float64",
+            "std_msgs/Float64MultiArray", "trajectory_msgs/JointTrajectory"}
+SENSORS = {"sensor_msgs/Image", "sensor_msgs/CompressedImage", "sensor_msgs/LaserScan",
+           "sensor_msgs/PointCloud2", "sensor_msgs/Imu"}
+SAID_ELSEWHERE = ("/rviz", "/rqt", "/sim_viewer", "/record", "/rosout")  # they show what is missing
+ALIKE = 0.8  # of two names that may mean the same
+MOST = 5  # names in a line
+
+
+class Fault(NamedTuple):
+    """What is said of it: a format and its values; `key` is the same while it is the same fault."""
+
+    key: Hashable
+    text: str
+    values: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Graph:
+    """Nodes by topic, and each topic's type, as the master has them."""
+
+    publishers: dict[str, list[str]]
+    subscribers: dict[str, list[str]]
+    types: dict[str, str]
+
+
+class Senders:
+    """Who sent a command last, and when; thread-safe."""
+
+    def __init__(self) -> None:
+        self._last: dict[str, dict[str, float]] = {}
+        self._lock = threading.Lock()
+
+    def note(self, topic: str, message: Any) -> None:
+        """A message came on a topic."""
+        caller = (getattr(message, "_connection_header", None) or {}).get("callerid")
+        if caller:
+            with self._lock:
+                self._last.setdefault(topic, {})[caller] = time.monotonic()
+
+    def recent(self, now: float) -> dict[str, list[str]]:
+        """Nodes by topic that sent within RECENT before `now` (time.monotonic)."""
+        with self._lock:
+            return {topic: sorted(caller for caller, last in callers.items()
+                                  if now - last <= RECENT)
+                    for topic, callers in self._last.items()}
+
+
+def contested(senders: dict[str, list[str]], types: dict[str, str]) -> Iterator[Fault]:
+    """Topics of commands on which several nodes send."""
+    for topic, nodes in senders.items():
+        if len(nodes) > 1 and types.get(topic) in COMMANDS:
+            yield Fault(("contested", topic, *nodes),
+                        "%s send commands on %s at the same time, so the robot follows now one, "
+                        "now the other: end one of them (Ctrl-C in its terminal, or rosnode kill)",
+                        (" and ".join(nodes), topic))
+
+
+def unheard(graph: Graph, me: str) -> Iterator[Fault]:
+    """Topics of commands that nobody hears, while a robot hears nobody on another one."""
+    idle = [topic for topic, nodes in graph.subscribers.items()
+            if me in nodes and not graph.publishers.get(topic)]
+    for topic, nodes in graph.publishers.items():
+        kind = graph.types.get(topic)
+        if kind not in COMMANDS or graph.subscribers.get(topic) or me in nodes:
+            continue
+        meant = [other for other in idle if graph.types.get(other) == kind
+                 and (kind == "geometry_msgs/Twist" or _alike(topic, other))]
+        if meant:
+            yield Fault(("unheard", topic, *nodes),
+                        "%s sends commands on %s, but nobody hears them there; the robot listens "
+                        "on %s", (" and ".join(nodes), topic, _nearest(topic, meant)))
+
+
+def unseen(graph: Graph, me: str) -> Iterator[Fault]:
+    """Topics of sensors that somebody waits for and nobody publishes, while ours has others."""
+    for topic, everybody in graph.subscribers.items():
+        kind = graph.types.get(topic)
+        nodes = [node for node in everybody
+                 if node != me and not node.startswith(SAID_ELSEWHERE)]
+        if kind not in SENSORS or not nodes or graph.publishers.get(topic):
+            continue
+        meant = [other for other, by in graph.publishers.items()
+                 if me in by and graph.types.get(other) == kind]
+        if meant:
+            yield Fault(("unseen", topic, *nodes),
+                        "%s waits for %s on %s, but nobody publishes it; the simulator publishes "
+                        "%s", (" and ".join(nodes), kind, topic, _nearest(topic, meant)))
+
+
+def _alike(first: str, second: str) -> bool:
+    return (first.rpartition("/")[2] == second.rpartition("/")[2]
+            or _likeness(first, second) > ALIKE)
+
+
+def _likeness(first: str, second: str) -> float:
+    return SequenceMatcher(None, first, second).ratio()
+
+
+def _nearest(topic: str, others: list[str]) -> str:
+    """The names that come nearest, the nearest first."""
+    near = sorted(others, key=lambda other: (-_likeness(topic, other), other))
+    return ", ".join(near[:MOST]) + (" ..." if len(near) > MOST else "")
+
+
+class Reports:
+    """Each fault once, when it has lasted for PATIENCE."""
+
+    def __init__(self) -> None:
+        self._since: dict[Hashable, float] = {}
+        self._said: dict[Hashable, float] = {}
+
+    def due(self, faults: list[Fault], now: float) -> list[Fault]:
+        """Those to be said now, of all that there are at `now` (time.monotonic)."""
+        self._since = {fault.key: self._since.get(fault.key, now) for fault in faults}
+        due = []
+        for fault in faults:
+            if now - self._since[fault.key] < PATIENCE:
+                continue
+            last = self._said.get(fault.key)
+            self._said[fault.key] = now  # also while it lasts: it is said again only if it ended
+            if last is None or now - last > AGAIN:
+                due.append(fault)
+        return due
+
+
+def watch(senders: Senders) -> None:
+    """Look for faults every LOOK until shutdown, in a thread; after init_node."""
+    threading.Thread(target=_watch, args=(senders,), daemon=True).start()
+
+
+def _watch(senders: Senders) -> None:
+    master, reports, me = rosgraph.Master(rospy.get_name()), Reports(), rospy.get_name()
+    ended = threading.Event()
+    rospy.on_shutdown(ended.set)
+    while not ended.wait(LOOK):
+        try:
+            graph = _graph(master)
+        except (OSError, MasterException):
+            continue  # the master is busy, or has ended, which others say
+        now = time.monotonic()
+        faults = [*contested(senders.recent(now), graph.types), *unheard(graph, me),
+                  *unseen(graph, me)]
+        for fault in reports.due(faults, now):
+            log.warning(fault.text, *fault.values)
+
+
+def _graph(master: rosgraph.Master) -> Graph:
+    publishers, subscribers, _services = master.getSystemState()
+    return Graph(dict(publishers), dict(subscribers), dict(master.getTopicTypes()))
