@@ -79,6 +79,14 @@ def set_params(values: dict[str, Any]) -> None:
         rospy.set_param(f"~{name}", value)
 
 
+LASER_FILTERS = {
+    "LaserScanRangeFilter": {"lower_threshold": 0.3}, "LaserScanIntensityFilter": {},
+    "LaserScanFootprintFilter": {"inscribed_radius": 0.3}, "InterpolationFilter": {},
+    "ScanShadowsFilter": {"min_angle": 10.0, "max_angle": 170.0, "window": 2, "neighbors": 1},
+    "LaserScanSpeckleFilter": {}, "LaserScanMaskFilter": {"masks": {"laser": [0, 3]}},
+    "LaserScanAngularBoundsFilter": {"lower_angle": -1.0, "upper_angle": 1.0},
+    "LaserArrayFilter": {"range_filter_chain": [{"type": "MultiChannelMedianFilterFloat",
+                                                 "params": {"number_of_observations": 3}}]}}
 NODES: dict[str, Callable[[], Any]] = {
     "twist_mux": of_script(f"{COMPAT}/twist_mux/nodes/twist_mux", topics=SOURCES,
                            locks=[{**SOURCES[0], "topic": "lock"}]),
@@ -91,6 +99,14 @@ NODES: dict[str, Callable[[], Any]] = {
     "laserscan_to_pointcloud": of_script(
         f"{COMPAT}/pointcloud_to_laserscan/nodes/laserscan_to_pointcloud_node", "LaserToCloud",
         target_frame="base_link"),
+    "laser_filters": of_script(
+        f"{COMPAT}/laser_filters/nodes/scan_to_scan_filter_chain", "FilterChain",
+        scan_filter_chain=[{"type": f"laser_filters/{kind}", "params": params}
+                           for kind, params in LASER_FILTERS.items()]),
+    "robot_pose_ekf": of_script(f"{COMPAT}/robot_pose_ekf/nodes/robot_pose_ekf", "RobotPoseEkf"),
+    "imu_complementary_filter": of_script(
+        f"{COMPAT}/imu_complementary_filter/nodes/complementary_filter_node",
+        "ComplementaryFilter"),
     "turtlebot3_fake": of_script(f"{COMPAT}/turtlebot3_fake/nodes/turtlebot3_fake_node", "Fake"),
     "turtlebot3_drive": of_script(f"{COMPAT}/turtlebot3_gazebo/nodes/turtlebot3_drive", "Drive"),
     "robot_localization": of_class("robot_localization.node", "LocalizationNode", **FUSED),
@@ -104,6 +120,8 @@ NODES: dict[str, Callable[[], Any]] = {
                      use_map_topic=True),
     "slam_gmapping": of_table("gmapping", "SlamNode", "slam_gmapping.yaml", particles=2, xmin=-5.0,
                               ymin=-5.0, xmax=5.0, ymax=5.0),
+    "hector_mapping": of_table("hector_mapping", "HectorMapping", "hector_mapping.yaml",
+                               map_size=100),
     "fake_localization": of_table("fake_localization", "FakeLocalization",
                                   "fake_localization.yaml"),
     "tracker": of_settings(f"{LESSONS}/ai_robot_tracking/scripts/visual_tracker_pid.py",

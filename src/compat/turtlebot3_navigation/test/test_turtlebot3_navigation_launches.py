@@ -13,7 +13,7 @@ from map_server.map_files import read_map
 
 COMPAT = Path(__file__).resolve().parents[2]
 NAVIGATION, SLAM = COMPAT / "turtlebot3_navigation", COMPAT / "turtlebot3_slam"
-OTHER_METHODS = ("cartographer", "hector", "karto", "frontier_exploration")
+OTHER_METHODS = ("cartographer", "karto", "frontier_exploration")
 BURGER = [[-.105, -.105], [-.105, .105], [.041, .105], [.041, -.105]]
 WAFFLE = [[-.205, -.155], [-.205, .155], [.077, .155], [.077, -.155]]
 MODELS = {  # outline, largest and least speed, m/s; the same in rad/s; sim_time, s
@@ -28,6 +28,12 @@ GMAPPING = {
     "temporalUpdate": .5, "resampleThreshold": .5, "particles": 100, "xmin": -10, "ymin": -10,
     "xmax": 10, "ymax": 10, "delta": .05, "llsamplerange": .01, "llsamplestep": .01,
     "lasamplerange": .005, "lasamplestep": .005}
+HECTOR = {
+    "map_frame": "map", "odom_frame": "odom", "base_frame": "base_footprint", "scan_topic": "scan",
+    "scan_subscriber_queue_size": 5, "pub_map_odom_transform": True, "map_size": 2048,
+    "tf_map_scanmatch_transform_frame_name": "scanmatcher_frame", "map_resolution": 0.05,
+    "map_update_distance_thresh": 0.1, "map_update_angle_thresh": 0.04, "map_pub_period": 2,
+    "laser_min_dist": 0.12, "laser_max_dist": 3.5}
 AMCL = {
     "min_particles": 500, "max_particles": 3000, "kld_err": .02, "update_min_d": .2,
     "update_min_a": .2, "resample_interval": 1, "transform_tolerance": .5,
@@ -81,6 +87,13 @@ def test_slam():
     assert {"/turtlebot3_slam_gmapping", "/robot_state_publisher", "/rviz"} == set(nodes)
     assert values["/robot_description"] == "a robot"
     assert "/rviz" not in load(SLAM, "turtlebot3_slam", "open_rviz:=false")[0]
+
+
+def test_hector():
+    nodes, values = load(SLAM, "turtlebot3_slam", "slam_methods:=hector")
+    assert nodes["/hector_mapping"].type == "hector_mapping"
+    assert below(values, "/hector_mapping/") == HECTOR
+    assert load(SLAM, "turtlebot3_hector", "map_size:=512")[1]["/hector_mapping/map_size"] == 512
 
 
 @pytest.mark.parametrize("method", OTHER_METHODS)

@@ -9,6 +9,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import Twist
 from std_msgs.msg import Bool
+from visualization_msgs.msg import Marker
 
 LIMIT = 60.0  # s, for whatever is waited for
 
@@ -42,6 +43,9 @@ class TwoDrive(unittest.TestCase):
         self.wait_for_five(0.1)
         self.sending["/input_joy/cmd_vel"] = True
         self.wait_for_five(0.9)
+        arrow = rospy.wait_for_message("/marker", Marker, LIMIT)
+        self.assertEqual((arrow.header.frame_id, arrow.type), ("base_footprint", Marker.ARROW))
+        self.assertIn(arrow.points[1].x, (0.1, 0.9))
         self.sending["/input_joy/cmd_vel"] = False
         self.wait_for_five(0.1)
         lock = rospy.Publisher("/pause_navigation", Bool, queue_size=1, latch=True)

@@ -21,6 +21,7 @@ TABLES = {
     "VoxelSettings": "costmap_2d/params/voxel_layer",
     "LocalisationSettings": "amcl/params/amcl", "SensorSettings": "amcl/params/amcl",
     "SlamSettings": "gmapping/params/slam_gmapping",
+    "ScanSlamSettings": "hector_mapping/params/hector_mapping",
 }
 
 

@@ -15,13 +15,15 @@ MARGIN = 2.0  # m; extra size of a grid that has to be enlarged
 def _count_scan(passes: np.ndarray, hits: np.ndarray, ends: np.ndarray, is_hit: np.ndarray,
                 column: float, row: float, yaw: float, laser_x: float, laser_y: float,
                 sign: int) -> None:
-    """Add (sign 1) or remove (sign -1) a scan. In cells."""
+    """Add (sign 1) or remove (sign -1) a scan, but for beams that end outside. In cells."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     from_column = int(np.floor(column + cos * laser_x - sin * laser_y))
     from_row = int(np.floor(row + sin * laser_x + cos * laser_y))
     for k in range(len(ends)):
         to_column = int(np.floor(column + cos * ends[k, 0] - sin * ends[k, 1]))
         to_row = int(np.floor(row + sin * ends[k, 0] + cos * ends[k, 1]))
+        if not (0 <= to_row < len(hits) and 0 <= to_column < hits.shape[1]):
+            continue
         count_between(passes, from_row, from_column, to_row, to_column, sign)
         if is_hit[k]:
             hits[to_row, to_column] += sign
@@ -31,9 +33,9 @@ class MapRendering:
     """Counts for one path, updated with as few scans as the path's change needs."""
 
     def __init__(self, resolution: float, lower: tuple[float, float],
-                 upper: tuple[float, float]) -> None:
-        """An empty map from `lower` to `upper` (x, y), m."""
-        self._resolution = resolution
+                 upper: tuple[float, float], grows: bool = True) -> None:
+        """An empty map from `lower` to `upper` (x, y), m, that `grows` as needed or stays so."""
+        self._resolution, self._grows = resolution, grows
         self._origin = np.array(lower, float)
         columns, rows = np.ceil((np.array(upper) - lower) / resolution - 1e-9).astype(int)
         self._passes = np.zeros((rows, columns), np.int32)
@@ -53,9 +55,9 @@ class MapRendering:
                 & (numbers[:both] == self._scans[:both]))
         common = both if same.all() else int(np.argmin(same))
         for pose, number in zip(self._poses[common:], self._scans[common:], strict=True):
-            self._count(pose, scans[number], laser, -1)
+            self.count(pose, scans[number], laser, -1)
         for pose, number in zip(poses[common:], numbers[common:], strict=True):
-            self._count(pose, scans[number], laser, 1)
+            self.count(pose, scans[number], laser)
         self._poses, self._scans = poses, numbers
 
     def grid(self, threshold: float) -> OccupancyGrid:
@@ -65,13 +67,15 @@ class MapRendering:
         return OccupancyGrid(np.where(seen > 0, cells, UNKNOWN).astype(np.int8), self._resolution,
                              (float(self._origin[0]), float(self._origin[1])))
 
-    def _count(self, pose: np.ndarray, scan: tuple[np.ndarray, np.ndarray], laser: np.ndarray,
-               sign: int) -> None:
+    def count(self, pose: np.ndarray, scan: tuple[np.ndarray, np.ndarray], laser: np.ndarray,
+              sign: int = 1) -> None:
+        """Add a scan taken at `pose` (x, y, yaw); -1 removes it. Arguments as in `follow`."""
         ends, is_hit = scan
         if not len(ends):
             return
-        reach = float(np.hypot(ends[:, 0], ends[:, 1]).max()) + 2 * self._resolution
-        self._cover(pose[:2] - reach, pose[:2] + reach)
+        if self._grows:
+            reach = float(np.hypot(ends[:, 0], ends[:, 1]).max()) + 2 * self._resolution
+            self._cover(pose[:2] - reach, pose[:2] + reach)
         column, row = (pose[:2] - self._origin) / self._resolution
         _count_scan(self._passes, self._hits, ends / self._resolution, is_hit, column, row,
                     pose[2], *(laser / self._resolution), sign)

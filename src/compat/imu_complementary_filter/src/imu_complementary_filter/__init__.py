@@ -1,0 +1,1 @@
+"""The attitude of an IMU: the filter, without ROS."""

@@ -1,0 +1,1 @@
+"""Maps from a laser alone: the node hector_mapping."""
