@@ -35,7 +35,7 @@ race: ## drive the racetrack by camera, and report [LAPS= DURATION= FAST= CAMERA
 	  $(if $(SEED),--seed "$(SEED)")
 
 viewer: ## start the line course, and show it in the browser [CONTROL=1] [RVIZ=FILE] [PORT=8080] [ADDRESS=0.0.0.0]
-	@scripts/viewer.sh $(if $(filter-out 0 no false,$(CONTROL)),control:=true) \
+	@exec scripts/viewer.sh $(if $(filter-out 0 no false,$(CONTROL)),control:=true) \
 	  $(if $(PORT),"port:=$(PORT)") $(if $(ADDRESS),"address:=$(ADDRESS)") $(if $(RVIZ),"rviz:=$(RVIZ)")
 
 drive: ## drive the racecar with the keys W, A, S and D, in a window or in this terminal

@@ -23,6 +23,7 @@ fi
 
 # The ROS master that the caller set, for scripts that use it.
 given_master=("${ROS_MASTER_URI:-}" "${ROS_HOSTNAME:-}" "${ROS_IP:-}")
+export CALLERS_ROS_MASTER_URI=${given_master[0]}  # for run_session.master_choice
 
 # Another python3, an active venv or conda, or a sourced ROS workspace must not leak in.
 unset "${!PYTHON@}" "${!CONDA_@}" "${!ROS_@}" VIRTUAL_ENV CMAKE_PREFIX_PATH LD_LIBRARY_PATH \
@@ -47,19 +48,21 @@ set_up_trial() {
   "$root/scripts/setup.sh" "${options[@]}" || exit 2
 }
 
-# Chooses a master that other terminals can join: the caller's, else the default one, or a new one if its port is in use.
+# Chooses a master that other terminals can join: the caller's, else the usual one, or a new one if that is another user's.
+# Fails, after a line that says why, if a simulator runs there.
 choose_master() {
-  local usual=http://localhost:11311 port
+  local usual=http://localhost:11311
   if [ -n "${given_master[0]}" ] && [ "${given_master[0]%/}" != "$usual" ]; then
     export ROS_MASTER_URI=${given_master[0]}
     if [ -n "${given_master[2]}" ]; then unset ROS_HOSTNAME; export ROS_IP=${given_master[2]}; fi
     if [ -n "${given_master[1]}" ]; then export ROS_HOSTNAME=${given_master[1]}
     # Another machine cannot reach this one as localhost: let rospy use this machine's own name.
     elif [[ ! $ROS_MASTER_URI =~ ^http://(localhost|127\.) ]]; then unset ROS_HOSTNAME; fi
-    return 0
+  else
+    ROS_MASTER_URI=$(python3 -m run_session.master_choice)
+    export ROS_MASTER_URI
+    [ "$ROS_MASTER_URI" = "$usual" ] ||
+      say $"Another ROS master is running on this machine. In each further terminal type: export ROS_MASTER_URI=$ROS_MASTER_URI"
   fi
-  port=$(python3 -c 'from run_session.launch import free_port; print(free_port())')
-  export ROS_MASTER_URI=http://localhost:$port
-  [ "$ROS_MASTER_URI" = "$usual" ] ||
-    say $"Another ROS master is running on this machine. In each further terminal type: export ROS_MASTER_URI=$ROS_MASTER_URI"
+  python3 -m bullet_sim_ros.only_simulator
 }

@@ -4,7 +4,7 @@ failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" || exit 2
 enter_workspace
-choose_master
+choose_master || exit 1
 set -- ackermann:=true command_timeout:=true "$@"
 if [ -n "${DISPLAY:-}" ]; then
   exec roslaunch racecar_description car_control.launch "$@"
@@ -18,7 +18,8 @@ roslaunch racecar_description car_control.launch gui:=false keyboard:=false "$@"
   > "$root/out/drive.log" 2>&1 < /dev/null &
 launched=$!
 trap 'kill -INT "$launched" 2> /dev/null || true; wait "$launched" || true' EXIT
-trap 'exit 130' INT TERM HUP
+trap 'exit 0' INT  # Ctrl-C is how it is meant to end
+trap 'exit 130' TERM HUP
 echo $"The car is starting; the nodes' output is in out/drive.log."
 until rosservice list > /dev/null 2>&1; do
   if ! kill -0 "$launched" 2> /dev/null; then

@@ -14,14 +14,23 @@ for word in "$@"; do
   fi
   arguments+=("$word")
 done
-choose_master
+page_line() { python3 -c 'from sim_viewer.running_page import running_page
+said = running_page("sim_viewer", "")
+print(said[0] % said[1:] if said else "")' "${arguments[@]/#/_}"; }
+if ! choose_master; then
+  page=$(page_line)
+  [ -n "$page" ] || page=$"To see it in the browser, type: source devel/setup.bash; roslaunch sim_viewer viewer.launch"
+  say "$page"
+  exit 1
+fi
 mkdir -p "$root/out"
 roslaunch learning_topic 0course.launch gui:=false > "$root/out/viewer.log" 2>&1 < /dev/null &
 launched=$!
 page=
 trap 'kill -INT $launched $page 2> /dev/null || true; wait $launched $page || true' EXIT
-trap 'exit 130' INT TERM HUP
-echo $"The course is starting; its nodes' output is in out/viewer.log. Ctrl-C ends both course and page."
+trap 'exit 0' INT  # Ctrl-C is how it is meant to end: make has nothing to report
+trap 'exit 130' TERM HUP
+say $"The course is starting; its nodes' output is in out/viewer.log. Ctrl-C ends both course and page."
 until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; do
   if ! kill -0 "$launched" 2> /dev/null; then
     tail -n 5 "$root/out/viewer.log" >&2
@@ -30,7 +39,17 @@ until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; d
   fi
   sleep 0.2
 done
-# In the background: otherwise this shell would react to a container's SIGTERM only after the page has ended.
-roslaunch sim_viewer viewer.launch "${arguments[@]}" &
-page=$!
-wait "$page"
+running=$(page_line)
+if [ -n "$running" ]; then
+  say "$running"
+  wait "$launched" || true
+else
+  # In the background: otherwise this shell would react to a container's SIGTERM only after the page has ended.
+  roslaunch sim_viewer viewer.launch "${arguments[@]}" &
+  page=$!
+  wait -n "$launched" "$page" || true
+  kill -0 "$launched" 2> /dev/null && exit 1  # the page has said why it ended
+fi
+grep -a 'runs already\|has died\|FATAL\|ERROR\|Exception' "$root/out/viewer.log" | tail -n 3 >&2 || true
+echo $"viewer: the course has ended, and with it the page; the full output is in out/viewer.log" >&2
+exit 1

@@ -14,10 +14,11 @@ from course import Course
 from drive import LAUNCH, Watched
 from members import matching, send, wait_until
 
-from run_session.launch import DIED, USUAL_PORT, is_up
+from run_session.launch import DIED
+from run_session.master_choice import USUAL, is_up
 from run_session.processes import read_log
 
-MASTER = f"http://localhost:{USUAL_PORT}"  # not shared: a round has a network of its own
+MASTER = USUAL  # not shared: a round has a network of its own
 ROSCORE, WORLD = "roscore", "world"  # terminals; others have their driver's name
 OWNERS = {"simulator": WORLD, "roslaunch": WORLD, "master": ROSCORE}  # their terminals
 

@@ -58,7 +58,7 @@ def look_up(master_uri: str, caller: str, topics: Iterable[str]) -> Connections:
 def _links_of(master: rosgraph.Master, caller: str, node: str) -> list[tuple[str, str, str]]:
     """A node's outgoing connections, from its getBusInfo (ROS slave API)."""
     try:
-        slave = xmlrpc.client.ServerProxy(master.lookupNode(node), _ImpatientTransport())
+        slave = xmlrpc.client.ServerProxy(master.lookupNode(node), ImpatientTransport())
         _, _, connections = slave.getBusInfo(caller)
         return [
             (node, str(topic), str(receiver))
@@ -70,7 +70,7 @@ def _links_of(master: rosgraph.Master, caller: str, node: str) -> list[tuple[str
         return []  # it hangs, is gone, or its answer is malformed
 
 
-class _ImpatientTransport(xmlrpc.client.Transport):
+class ImpatientTransport(xmlrpc.client.Transport):
     """Hangs up after ANSWER_TIME, because a node may hang, or answer without an end."""
 
     def make_connection(self, host: str) -> HTTPConnection:

@@ -6,21 +6,17 @@ import os
 import re
 import shutil
 import signal
-import socket
 import tempfile
 import time
-import xmlrpc.client
 from collections.abc import Callable, Mapping
-from http.client import HTTPException
 from pathlib import Path
 from types import MappingProxyType
-from xml.parsers.expat import ExpatError
 
 from run_session.failure import RunError
+from run_session.master_choice import is_up, own_port
 from run_session.processes import INTERRUPT_TIME, Child, Family
 from run_session.turn import take_turn
 
-USUAL_PORT = 11311
 LOOPBACK = "127.0.0.1"  # not localhost: that is ::1 too, where another program may listen
 ROSCORE_TIME = 300.0  # s, wall; an emulated ARM processor takes more than 20
 LOOK_PERIOD = 0.05  # s, wall
@@ -49,7 +45,7 @@ class Launched:
         # Held from choosing a port until roscore listens, so that no other run takes the same one.
         turn = log_folder if alone else Path(tempfile.gettempdir())
         self._turn = take_turn(turn / f"course_run-{os.getuid()}.lock")
-        self.port = free_port()
+        self.port, self.why_not_callers = own_port()  # the caller's master
         self.master_uri = f"http://{LOOPBACK if alone else 'localhost'}:{self.port}"
         self._environment = dict(
             os.environ,
@@ -198,23 +194,3 @@ def describe_exit(code: int) -> str:
         return f"killed by signal {-code}, {signal.Signals(-code).name}"
     except ValueError:
         return f"killed by signal {-code}"
-
-
-def free_port() -> int:
-    """ROS's default port if it is free, else another."""
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind(("", USUAL_PORT))
-        except OSError:
-            probe.bind(("", 0))
-        return probe.getsockname()[1]
-
-
-def is_up(master_uri: str) -> bool:
-    """Whether roscore has set /run_id; if roslaunch starts earlier and sets it, roscore exits."""
-    try:
-        code, _, named = xmlrpc.client.ServerProxy(master_uri).hasParam("/course_run", "/run_id")
-    except (OSError, xmlrpc.client.Error, HTTPException, ExpatError):
-        return False
-    return code == 1 and named

@@ -21,6 +21,8 @@ pytestmark = pytest.mark.processes
 ROOT = Path(__file__).resolve().parents[4]
 LIMIT = 180.0  # s, until the page serves
 END_LIMIT = 60.0  # s, after Ctrl-C
+SIMULATOR_RUNS = re.compile(r"A simulator runs already on this master \(world course, started \d+ "
+                            r"(s|min) ago\)")
 CPP_NODES = {"rosout", "robot_state_publisher"}  # of Debian's
 
 
@@ -90,9 +92,35 @@ def test_course_and_page_come_and_go_together(viewer, usual_port_free):
     assert {name for name, loopback in sockets if not loopback} <= CPP_NODES, sockets
     # A second terminal finds the usual one, where nobody else has it.
     assert usual_port_free == ("Another ROS master" not in log.read_text())
+    said = again("viewer") if usual_port_free else None
+    assert process.poll() is None
+    if said is not None:
+        assert SIMULATOR_RUNS.search(said)
+        assert f"A page runs already: {address_in(log, process)}" in said
+        assert SIMULATOR_RUNS.search(again("drive"))
     os.killpg(process.pid, signal.SIGINT)  # as a terminal's Ctrl-C: to all of them
     process.wait(END_LIMIT)
-    assert "Traceback" not in log.read_text()
+    assert "Traceback" not in log.read_text() and "make: ***" not in log.read_text()
+
+
+def again(verb: str) -> str:
+    """What a second terminal reads, where the verb must end at once with a failure."""
+    done = subprocess.run(["make", verb], cwd=ROOT, text=True, stdin=subprocess.DEVNULL,
+                          capture_output=True, timeout=LIMIT)
+    assert done.returncode != 0
+    return done.stdout + done.stderr
+
+
+def test_a_course_that_dies_is_said_in_its_terminal(viewer):
+    process, log = viewer
+    address_in(log, process)
+    (simulator,) = [each for each in psutil.Process(process.pid).children(recursive=True)
+                    if "course.world" in " ".join(each.cmdline())]
+    simulator.kill()
+    assert process.wait(END_LIMIT) != 0
+    assert "REQUIRED process [gazebo-" in log.read_text()
+    assert "viewer: the course has ended, and with it the page; the full output is in " \
+           "out/viewer.log" in log.read_text()
 
 
 @pytest.fixture

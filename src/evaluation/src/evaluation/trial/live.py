@@ -136,6 +136,8 @@ def run_live(drive: LiveDrive) -> int:
             try:
                 drive.progress.status("starting roscore")
                 launched.start_roscore()
+                if why := launched.why_not_callers:
+                    drive.progress.say(why[0] % why[1:])
                 drive.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
                 drive.bring_up(launched)
                 outcome = drive.watch(launched)

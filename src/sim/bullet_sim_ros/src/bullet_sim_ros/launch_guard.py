@@ -36,7 +36,7 @@ def refusal_of(command: list[str]) -> str:
     words = next((command[at + 1:] for at, word in enumerate(command[:2])
                   if Path(word).name == "roslaunch"), None)
     own_port = any(word.startswith(("-p", "--port")) for word in words or ())
-    if words is None or not (own_port or _is_online(os.environ.get("ROS_MASTER_URI", ""))):
+    if words is None or not (own_port or is_online(os.environ.get("ROS_MASTER_URI", ""))):
         return ""
     # Only now, as these take half a second to load.
     import rosgraph
@@ -88,7 +88,8 @@ def _command_line(process: int) -> list[str]:
     return [word.decode(errors="replace") for word in words[:-1]]
 
 
-def _is_online(uri: str) -> bool:
+def is_online(uri: str) -> bool:
+    """Whether something listens at this URI; no longer than CONNECTION_TIME, unlike rosgraph's."""
     place = urlsplit(uri)
     try:
         socket.create_connection((place.hostname, place.port), CONNECTION_TIME).close()

@@ -1,9 +1,11 @@
 """One simulator of a name at a master: a second one ends before the first notices anything.
 
-Twice: `refuse_launch` while roslaunch reads empty_world.launch, before it sets a parameter or
-starts a node; and `register` in the node itself, however it was started.
+Twice: launch_guard.py while roslaunch reads empty_world.launch, before it sets a parameter or
+starts a node; and `register` in the node itself, however it was started. As a program, for scripts
+that start a course in the background: that line and exit code 1, if /gazebo may not start.
 """
 
+import sys
 import time
 from pathlib import Path
 
@@ -12,6 +14,7 @@ import rospy
 
 from bullet_sim_ros import names
 from bullet_sim_ros.already_running import Sign, full_name, registering, sign_of_life
+from bullet_sim_ros.launch_guard import is_online
 
 DEFAULT_NAME = "gazebo"
 RUNS_ALREADY = ("A simulator runs already on this master (%s). End it with Ctrl-C in its terminal, "
@@ -62,3 +65,16 @@ def _what_runs(master_uri: str, name: str) -> str:
         return name
     size, unit = next(one for one in UNITS if age >= one[0] or one[0] == 1)
     return f"world {world}, started {age // size} {unit} ago"
+
+
+def main() -> int:
+    """Print why no simulator may start, if so; returns the exit code."""
+    uri = rosgraph.get_master_uri()
+    refused = refusal(uri, f"/{DEFAULT_NAME}") if is_online(uri) else ()
+    if refused:
+        print(refused[0] % refused[1], file=sys.stderr)
+    return 1 if refused else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,78 @@
+"""Which master a command uses, by what the caller has set and who listens where."""
+
+import os
+import socket
+
+import pytest
+
+from run_session import master_choice
+from run_session.master_choice import CALLERS, USUAL, free_port, listens_here, own_port
+
+
+@pytest.fixture
+def callers(monkeypatch):
+    """Set the caller's ROS_MASTER_URI, as scripts/common.sh does."""
+    monkeypatch.setenv("ROS_MASTER_URI", USUAL)
+    return lambda uri: monkeypatch.setenv(CALLERS, uri)
+
+
+@pytest.mark.parametrize("host", ["localhost", "127.0.0.1", socket.gethostname()])
+def test_a_free_port_of_this_machine_is_kept(callers, host):
+    port = free_port(0)
+    callers(f"http://{host}:{port}/")
+    assert own_port() == (port, ())
+
+
+@pytest.mark.parametrize("uri", ["", USUAL, USUAL + "/"])
+def test_what_setup_bash_sets_is_no_choice(callers, uri):
+    callers(uri)
+    assert own_port()[1] == ()
+
+
+def test_one_that_is_taken_is_said(callers):
+    with socket.create_server(("localhost", 0)) as other:
+        taken = other.getsockname()[1]
+        callers(f"http://localhost:{taken}")
+        port, (form, uri) = own_port()
+    assert port != taken
+    assert form % uri == (
+        f"ROS_MASTER_URI=http://localhost:{taken} is not used: something listens there already, "
+        "and this command starts a ROS master of its own")
+
+
+@pytest.mark.parametrize("uri", ["http://192.0.2.7:11311", "http://192.0.2.7", "http://x:y"])
+def test_one_of_another_machine_is_said(callers, uri):
+    callers(uri)
+    _, why = own_port()
+    assert why[0] % why[1:] == (f"ROS_MASTER_URI={uri} is not used: this command starts a ROS "
+                                "master of its own, on this machine")
+
+
+def test_a_program_that_was_started_by_hand_is_asked_for_its_own_variable(monkeypatch):
+    monkeypatch.delenv(CALLERS, raising=False)
+    port = free_port(0)
+    monkeypatch.setenv("ROS_MASTER_URI", f"http://localhost:{port}")
+    assert own_port() == (port, ())
+
+
+def test_who_listens():
+    with socket.create_server(("localhost", 0)) as here:
+        port = here.getsockname()[1]
+        assert listens_here(port)
+    assert not listens_here(port)
+
+
+def test_another_users_process_is_not_ours(monkeypatch):
+    with socket.create_server(("localhost", 0)) as here:
+        monkeypatch.setattr(os, "getuid", lambda: -1)
+        assert not listens_here(here.getsockname()[1])
+
+
+@pytest.mark.parametrize(("listens", "up", "joined"), [
+    (True, True, True), (True, False, False), (False, True, False)])
+def test_only_a_master_of_ones_own_is_joined(monkeypatch, listens, up, joined):
+    monkeypatch.setattr(master_choice, "listens_here", lambda _port: listens)
+    monkeypatch.setattr(master_choice, "is_up", lambda _uri: up)
+    monkeypatch.setattr(master_choice, "free_port", lambda: 40123)
+    expected = USUAL if joined else "http://localhost:40123"
+    assert master_choice.master_to_join() == expected
