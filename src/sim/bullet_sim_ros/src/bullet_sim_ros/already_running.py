@@ -8,6 +8,7 @@ import errno
 import hashlib
 import http.client
 import socket
+import sys
 import time
 import xmlrpc.client
 from collections.abc import Iterator
@@ -17,7 +18,7 @@ from urllib.parse import urlsplit
 from xml.parsers.expat import ExpatError
 
 import rosgraph
-import rospy
+from rosgraph.names import get_ros_namespace, load_mappings, ns_join, resolve_name
 
 ANSWER_TIME = 2.0  # s, wall, for a connection and for an answer
 TURN_TIME = 15.0  # s, wall; a registration takes 0.1 s
@@ -34,8 +35,18 @@ class Sign(Enum):
 
 def full_name(default: str) -> str:
     """The name that rospy.init_node(default) will register, before it does so."""
-    name = rospy.names.get_mappings().get("__name", default)
-    return rosgraph.names.resolve_name(name, rospy.get_name())
+    name = load_mappings(sys.argv).get("__name", default)
+    return resolve_name(name, ns_join(get_ros_namespace(), name))
+
+
+def is_online(master_uri: str) -> bool:
+    """Whether something listens at this URI; no longer than ANSWER_TIME, unlike rosgraph's."""
+    place = urlsplit(master_uri)
+    try:
+        socket.create_connection((place.hostname, place.port), ANSWER_TIME).close()
+    except (OSError, TypeError):
+        return False
+    return True
 
 
 def sign_of_life(master_uri: str, name: str) -> Sign:
@@ -44,10 +55,7 @@ def sign_of_life(master_uri: str, name: str) -> Sign:
         uri = rosgraph.Master(name, master_uri).lookupNode(name)
     except rosgraph.MasterException:
         return Sign.GONE
-    place = urlsplit(uri)
-    try:
-        socket.create_connection((place.hostname, place.port), ANSWER_TIME).close()
-    except OSError:
+    if not is_online(uri):
         return Sign.GONE
     try:
         _, _, told = xmlrpc.client.ServerProxy(uri, _ImpatientTransport()).getName(name)

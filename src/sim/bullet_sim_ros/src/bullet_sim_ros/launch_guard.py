@@ -8,13 +8,12 @@ this program print the value of a parameter: if it fails, roslaunch ends with ex
 import contextlib
 import io
 import os
-import socket
 import sys
 from pathlib import Path
-from urllib.parse import urlsplit
+
+from bullet_sim_ros.already_running import is_online
 
 SERVERS = ("gzserver", "gazebo", "debug", "perf")  # of gazebo_ros
-CONNECTION_TIME = 1.0  # s, wall
 
 
 def main() -> int:
@@ -86,13 +85,3 @@ def simulators_of(files: list[str], command: list[str]) -> list[str]:
 def _command_line(process: int) -> list[str]:
     words = Path(f"/proc/{process}/cmdline").read_bytes().split(b"\0")
     return [word.decode(errors="replace") for word in words[:-1]]
-
-
-def is_online(uri: str) -> bool:
-    """Whether something listens at this URI; no longer than CONNECTION_TIME, unlike rosgraph's."""
-    place = urlsplit(uri)
-    try:
-        socket.create_connection((place.hostname, place.port), CONNECTION_TIME).close()
-    except (OSError, TypeError):
-        return False
-    return True

@@ -13,8 +13,13 @@ import rosgraph
 import rospy
 
 from bullet_sim_ros import names
-from bullet_sim_ros.already_running import Sign, full_name, registering, sign_of_life
-from bullet_sim_ros.launch_guard import is_online
+from bullet_sim_ros.already_running import (
+    Sign,
+    full_name,
+    is_online,
+    registering,
+    sign_of_life,
+)
 
 DEFAULT_NAME = "gazebo"
 RUNS_ALREADY = ("A simulator runs already on this master (%s). End it with Ctrl-C in its terminal, "
