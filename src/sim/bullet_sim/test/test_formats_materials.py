@@ -49,6 +49,20 @@ def test_every_named_material_is_a_material(name):
         assert len(colour) == 4 and all(0 <= part <= 1 for part in colour)
 
 
+@pytest.mark.parametrize("name, redder", [
+    ("vrc/grey_wall", 0), ("vrc/grass", -1), ("vrc/asphalt", 0), ("vrc/mud", 1),
+    ("Rubble/Brick", 1), ("Kitchen/Cabinet", 1), ("RoboCup/Carpet", -1), ("Block/Blue", 0),
+    ("youbot/Orange", 1)])
+def test_names_of_other_scripts_have_their_colour_without_the_script(name, redder, caplog):
+    uri = "<uri>model://somewhere/materials/scripts</uri>"
+    model = load_model(f"""<sdf version="1.6"><model name="m"><link name="l"><visual name="v">
+        <geometry><sphere/></geometry><material><script>{uri}<name>{name}</name></script></material>
+        </visual></link></model></sdf>""", NO_FILES)
+    red, green = model.links[0].visuals[0].material.diffuse[:2]
+    assert abs(red - green) <= 0.1 if redder == 0 else (red - green) * redder > 0
+    assert not caplog.records
+
+
 @pytest.mark.parametrize("colour", [
     *GROUNDS.values(), SOIL, *(part for material in (CLOTHES, SKIN)
                                for part in (material.ambient, material.diffuse))])
