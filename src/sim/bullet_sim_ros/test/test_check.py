@@ -442,6 +442,72 @@ def test_a_workspace_before_it_is_built(tmp_path, capsys):
     assert "works         build" in wheel or "roscpp needs it: make deps WS=" in wheel
 
 
+def test_a_workspace_is_not_said_to_work_before_its_contents_were_looked_at(tmp_path, capsys):
+    folder = tmp_path / "src/arm"
+    folder.mkdir(parents=True)
+    (folder / "package.xml").write_text(
+        "<package format='2'><name>arm</name><version>1.0.0</version><license>BSD</license>"
+        "<description>d</description><maintainer email='a@example.com'>a</maintainer></package>")
+    (folder / "CMakeLists.txt").write_text("find_package(catkin REQUIRED)")
+    (folder / "arm.urdf").write_text("<robot")
+    assert main([str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "not checked   what is in the packages: robots, worlds, launch files and YAML" in said
+    assert said.endswith("all that was checked will work\n")
+
+
+def test_yaml_of_a_package(package, capsys):
+    folder = package(robot__urdf=ROBOT.format(""), opencv__yaml="%YAML:1.0\na: !!opencv-matrix\n",
+                     own__yaml="a: !mine {b: 1}\n", good__yaml="a:\n  type: x\n")
+    assert main([folder]) == 0
+    assert capsys.readouterr().out.endswith("all of it will work\n")
+    package(bad__yaml="a:\n\tb: 1\n")
+    package(arm__yaml="arm:\n  grip: {type: effort_controllers/JointPositionContrller}\n")
+    assert main([folder]) == 1
+    said = capsys.readouterr().out
+    assert "bad.yaml\n  PROBLEM       YAML: while scanning" in said and "line 2, column 1" in said
+    assert "controller /arm/grip (effort_controllers/JointPositionContrller): there is no" in said
+
+
+def test_a_hyphen_in_a_name_is_no_fault_where_the_spawner_gives_the_namespace(check):
+    robot = JOINTED.format(DRIVE.format(tag="leftJoint")).replace('name="r"', 'name="my-robot"')
+    code, said = check("robot.urdf", robot)
+    assert code == 0 and "PROBLEM" not in said
+
+
+def test_search_paths_that_a_launch_file_sets(package, tmp_path, capsys):
+    (tmp_path / "crate").mkdir()
+    (tmp_path / "crate/model.sdf").write_text(
+        '<sdf version="1.6"><model name="crate"><static>1</static><link name="l"/></model></sdf>')
+    world = WORLD.format("<include><uri>model://crate</uri></include>")
+    launch = """<launch>{}<node pkg="gazebo_ros" type="gzserver" name="g" args="here.world"/>
+      </launch>"""
+    paths = "".join(f'<env name="GAZEBO_{kind}_PATH" value="{tmp_path}"/>'
+                    for kind in ("RESOURCE", "MODEL"))
+    folder = package(here__world=world)
+    for env, code in (("", 1), (paths, 0)):
+        package(a__launch=launch.format(env))
+        assert main([f"{folder}/a.launch"]) == code, capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "here.world\n  works         world w (2 models)" in said
+
+
+def test_xacro_that_a_package_runs_by_itself_is_said_to_be_unread(tmp_path, capsys, monkeypatch):
+    folder = tmp_path / "own_spawner"
+    (folder / "scripts").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>own_spawner</name></package>")
+    script = folder / "scripts/spawn.sh"
+    script.write_text("#!/bin/sh\nrosparam set robot_description \"$(xacro $1.xacro)\"\n")
+    script.chmod(0o755)
+    (folder / "a.launch").write_text(
+        '<launch><node pkg="own_spawner" type="spawn.sh" name="s"/></launch>')
+    monkeypatch.setenv("ROS_PACKAGE_PATH", f"{folder}:{os.environ['ROS_PACKAGE_PATH']}")
+    assert main([f"{folder}/a.launch"]) == 0
+    said = capsys.readouterr().out
+    assert f"not checked   node own_spawner/spawn.sh: {script} runs xacro; the robot that" in said
+    assert said.endswith("all that was checked will work\n")
+
+
 def test_a_folder_that_is_no_workspace_and_one_that_is_named_by_its_src(tmp_path, capsys):
     assert main([str(tmp_path)]) == 2
     assert "this is not a workspace, it has no src/ with packages" in capsys.readouterr().err

@@ -2,7 +2,7 @@
 
 import logging
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree.ElementTree import Element
@@ -59,7 +59,7 @@ def _manifests(path: str) -> Iterator[Path]:
             below[:] = [name for name in below if not name.startswith(".")]
 
 
-def open_resources() -> Resources:
+def open_resources(environ: Mapping[str, str] = os.environ) -> Resources:
     """Search paths of this process, like those of gazebo_ros_paths_plugin.cpp."""
     ros_paths = rospkg.get_ros_paths()
     packages = list_packages(ros_paths)
@@ -70,7 +70,7 @@ def open_resources() -> Resources:
         return str(packages[name].folder)
 
     return Resources.from_environment(
-        os.environ,
+        environ,
         extra_model_paths=_exports(packages, "gazebo_model_path"),
         extra_resource_paths=_exports(packages, "gazebo_media_path"),
         find_package=find_package,

@@ -129,6 +129,8 @@ class Check:
             for path in sorted(folder.rglob(pattern)):
                 if path.suffix != ".xacro" or _is_robot(path, folder):
                     findings += self._file(path, alone=False)
+        for path in sorted(folder.rglob("*.yaml")):
+            findings += self._launches.yaml_file(path)
         return findings
 
 
@@ -146,7 +148,10 @@ def workspace_findings(path: Path) -> list[Finding]:
         verdicts = judge(source)
     except WorkspaceError as error:
         return [Finding(f"workspace {path}", "build", PROBLEM, str(error))]
-    return [finding for verdict in verdicts for finding in _of_package(verdict, path)]
+    found = [finding for verdict in verdicts for finding in _of_package(verdict, path)]
+    return [*found, Finding(f"workspace {path}", "what is in the packages", UNCHECKED,
+                            "robots, worlds, launch files and YAML are looked at one package at a "
+                            "time: rosrun bullet_sim_ros check PACKAGE")]
 
 
 def _of_package(verdict: Verdict, workspace: Path) -> list[Finding]:

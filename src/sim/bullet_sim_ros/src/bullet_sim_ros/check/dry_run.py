@@ -69,10 +69,11 @@ def listening() -> Iterator[list[LogLine]]:
 
 def try_model(description: ModelDescription, parameters: Mapping[str, object],
               namespace: str = "") -> None:
-    """Spawn a model into an empty world, as with -robot_namespace; SimulationError if that fails.
+    """Spawn a model into an empty world, as spawn_model does; SimulationError if that fails.
+
+    It gives each plugin a namespace, so that none takes the model's name, which may be no ROS name.
     """
-    if namespace.strip("/"):
-        description = with_namespace(description, namespace)
+    description = with_namespace(description, namespace or "/")
     _try(World(), parameters,
          lambda simulation: simulation.spawn(description, IDENTITY, description.name))
 

@@ -53,6 +53,7 @@ class LaunchedNode:
     type: str
     namespace: str
     args: str
+    environ: tuple[tuple[str, str], ...] = ()  # of its <env>
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,8 @@ def _read(path: Path, arguments: list[str], output: Callable[[str], str] | None,
         sender.send(_error_line(error))
         return
     sender.send(Launch(
-        tuple(LaunchedNode(node.package, node.type, node.namespace, node.args)
+        tuple(LaunchedNode(node.package, node.type, node.namespace, node.args,
+                           tuple(node.env_args))
               for node in config.nodes),
         {name: parameter.value for name, parameter in config.params.items()}))
 

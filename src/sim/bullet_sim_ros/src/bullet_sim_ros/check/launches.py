@@ -1,14 +1,19 @@
 """Checks launch files without starting anything: their nodes, worlds and robots."""
 
+from __future__ import annotations
+
 import itertools
+import os
 import re
 import shlex
 from collections.abc import Collection, Iterator, Mapping
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
 import roslib.packages
 import rospkg
+import yaml
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources
@@ -20,13 +25,18 @@ from bullet_sim_ros.check.launch_files import (
     missing_arguments,
     read_launch,
 )
-from bullet_sim_ros.check.parameter_commands import NotRun
+from bullet_sim_ros.check.parameter_commands import XACRO, NotRun
 from bullet_sim_ros.check.texts import TextChecker
 from bullet_sim_ros.control import controllers, registry  # noqa: F401  (controllers register)
 from bullet_sim_ros.interface import Row
+from bullet_sim_ros.package_paths import open_resources
 
 SPAWNERS = ("spawn_model", "spawn_model.py", "spawn_urdf")
 SERVERS = ("gzserver", "gazebo", "debug")
+OF_OPENCV = "%YAML:"  # no YAML: what cv::FileStorage writes
+SEARCH_PATHS = ("GAZEBO_MODEL_PATH", "GAZEBO_RESOURCE_PATH")
+LARGEST_SCRIPT = 2**20  # bytes
+CALLS_XACRO = re.compile(rb"\bxacro(\.py)?[\s\"',)]|\bxacro\.process_file|import xacro\b")
 
 
 _find_node = cache(roslib.packages.find_node)  # which looks through a whole package
@@ -38,6 +48,20 @@ def _words(node: LaunchedNode) -> list[str]:
         return shlex.split(node.args)
     except ValueError:
         return node.args.split()
+
+
+def _is_server(node: LaunchedNode) -> bool:
+    return node.package == "gazebo_ros" and node.type in SERVERS
+
+
+@cache
+def _runs_xacro(file: str) -> bool:
+    """Whether it is a script that names xacro and a .xacro file, other than xacro itself."""
+    path = Path(file)
+    if path.name in XACRO or not path.is_file() or path.stat().st_size > LARGEST_SCRIPT:
+        return False
+    text = path.read_bytes()
+    return text.startswith(b"#!") and CALLS_XACRO.search(text) is not None
 
 
 class LaunchChecker:
@@ -68,16 +92,44 @@ class LaunchChecker:
         found += [Finding(where, f"parameter {name}", UNCHECKED,
                           f"its command is not run: {value}; --run-commands runs it")
                   for name, value in launch.parameters.items() if isinstance(value, NotRun)]
+        server = self._with_environment(launch)
         for node in launch.nodes:
-            found += self._node(node, launch, where)
+            found += server._node(node, launch, where)
         spawned = {word for node in launch.nodes if node.package == "controller_manager"
                    for word in _words(node)}
         return [*found, *controller_findings(launch.parameters, spawned, self._rows, where)]
 
+    def yaml_file(self, path: Path) -> list[Finding]:
+        """Findings about a file that some launch file may load: its syntax, and its controllers."""
+        where = str(path)
+        try:
+            text = decoded(read_bytes(path))
+            if text.startswith(OF_OPENCV):
+                return []
+            list(yaml.compose_all(text, yaml.SafeLoader))  # tags may be anybody's own
+        except (SimulationError, yaml.YAMLError) as error:
+            return [problem(where, "YAML", error)]
+        with suppress(yaml.YAMLError):
+            content = yaml.safe_load(text)
+            if isinstance(content, dict):
+                return list(controller_findings(dict(_flat(content, "/")), (), self._rows, where))
+        return []
+
+    def _with_environment(self, launch: Launch) -> LaunchChecker:
+        """This one with the search paths that the launch file gives its simulator by <env>."""
+        written = {name: value for node in launch.nodes if _is_server(node)
+                   for name, value in node.environ if name in SEARCH_PATHS}
+        if not written:
+            return self
+        resources = open_resources({**os.environ, **written})
+        return LaunchChecker(self._rows, self._texts.with_resources(resources), resources,
+                             self._run_commands)
+
     def _node(self, node: LaunchedNode, launch: Launch, where: str) -> Iterator[Finding]:
         name = f"node {node.package}/{node.type}"
         try:
-            if not _find_node(node.package, node.type):
+            files = _find_node(node.package, node.type)
+            if not files:
                 yield Finding(where, name, ABSENT, f"package {node.package} has no executable "
                               f"{node.type} here")
                 return
@@ -87,7 +139,10 @@ class LaunchChecker:
             return
         yield Finding(where, name, WORKS)
         words = _words(node)
-        if node.package == "gazebo_ros" and node.type in SERVERS:
+        if _runs_xacro(files[0]):
+            yield Finding(where, name, UNCHECKED, f"{files[0]} runs xacro; the robot that it makes "
+                          "is not read: check its .xacro file")
+        if _is_server(node):
             yield from self._world(words, launch, where)
         elif node.package == "gazebo_ros" and node.type in SPAWNERS:
             yield from self._spawned(words, node, launch, where)
@@ -135,6 +190,15 @@ class LaunchChecker:
                     launch.parameters, namespace)
         return [problem(where, f"spawn_model -param {name}",
                         f"no parameter {full}; a <param name=\"{name}\"> has to stand before it")]
+
+
+def _flat(tree: dict, path: str) -> Iterator[tuple[str, object]]:
+    """Parameters by full name, and their values."""
+    for name, value in tree.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{path}{name}/")
+        else:
+            yield f"{path}{name}", value
 
 
 KIND = re.compile(r"\w+/\w+")

@@ -1,5 +1,7 @@
 """Checks robot and world texts: reads and spawns them as the simulator would, with its log."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -43,6 +45,10 @@ class TextChecker:
             how = "only to be shown: nothing in it has mass"
             return [Finding(where, "robot", APPROXIMATED, how)]
         return found
+
+    def with_resources(self, resources: Resources) -> TextChecker:
+        """A checker with other search paths."""
+        return TextChecker(self._rows, resources)
 
     def find_package(self, name: str) -> str:
         """The package's folder. ResourceNotFound if there is none."""
