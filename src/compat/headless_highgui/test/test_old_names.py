@@ -73,6 +73,17 @@ def test_it_is_said_once(tmp_path):
     assert done.stderr.count("is old") == 1
 
 
+def test_it_is_said_in_the_language_of_the_locale(monkeypatch, capsys):
+    catalogue = types.SimpleNamespace(translate=lambda text: f"译文 {text}")
+    package = types.ModuleType("terminal_language")
+    package.catalogue = types.SimpleNamespace(read_catalogue={"zh_CN": catalogue}.__getitem__)
+    package.wanted = types.SimpleNamespace(wanted_language=lambda env: env.get("LANGUAGE"))
+    monkeypatch.setitem(sys.modules, "terminal_language", package)
+    monkeypatch.setenv("LANGUAGE", "zh_CN")
+    old_names.tell("numpy.spam", "numpy.eggs", sys._getframe())
+    assert capsys.readouterr().err.startswith(f"译文 {__file__}:")
+
+
 @pytest.mark.parametrize("code", [
     IMAGE + f"contours, hierarchy = {CONTOURS}; print(len(contours))",
     IMAGE + f"contours = {CONTOURS}[-2]; print(len(contours))",

@@ -8,12 +8,10 @@ import collections
 import collections.abc
 import dis
 import functools
-import logging
 import os
 import sys
 import time
 
-log = logging.getLogger(__name__)
 HERE = (__file__, f"{os.path.dirname(os.path.dirname(__file__))}/usercustomize.py")
 LIBRARIES = tuple(f"{prefix}/lib/python3" for prefix in {sys.prefix, sys.base_prefix})
 NUMPY_BUILTINS = {"float": float, "int": int, "bool": bool, "object": object, "str": str,
@@ -45,10 +43,18 @@ def tell(old, new, frame):
         return
     _told.add(old)
     line = "%s:%d: %s is old: write %s"
-    rospy = sys.modules.get("rospy")
-    ready = rospy is not None and rospy.core.is_initialized()
-    (rospy.logwarn if ready else log.warning)(
-        line, frame.f_code.co_filename, frame.f_lineno, old, new)
+    text = line % (frame.f_code.co_filename, frame.f_lineno, old, new)
+    print(in_language_of_locale(text), file=sys.stderr, flush=True)
+
+
+def in_language_of_locale(text):
+    """The script is the learner's, so that nobody else translates what it prints."""
+    try:
+        from terminal_language import catalogue, wanted
+    except ImportError:  # it is off, by a CATKIN_IGNORE
+        return text
+    language = wanted.wanted_language(dict(os.environ))
+    return catalogue.read_catalogue(language).translate(text) if language else text
 
 
 def put_back(module, find):
