@@ -9,6 +9,7 @@ const LOOK_AGAIN_MS = 3000; // for new topics
 const COUNTED_MS = 2000; // over which pictures a second are counted
 const MOST_PX = 960;
 const CHOSEN = "images"; // the topics shown, stored by the browser
+const LOADING = t("loading …", "正在加载……"); // until the first picture
 
 let open = null;
 
@@ -19,7 +20,7 @@ export class Picture {
     this._link = link;
     this._onState = onState;
     this._image = element("img", { alt: topic });
-    this._rate = element("span", { class: "muted" });
+    this._rate = element("span", { class: "muted", text: LOADING });
     this._note = element("p", { class: "error", hidden: true });
     this.card = element("figure", { class: "card picture", "data-topic": topic },
       element("figcaption", { class: "row" }, element("b", { text: topic }), this._rate),
@@ -44,7 +45,7 @@ export class Picture {
     this._times = this._times.filter((time) => now - time < COUNTED_MS);
     const rate = this._times.length / (COUNTED_MS / 1000);
     this.card.dataset.rate = rate;
-    this._rate.textContent = this._size ? `${this._size}, ${rate.toFixed(1)} Hz` : "";
+    this._rate.textContent = this._size ? `${this._size}, ${rate.toFixed(1)} Hz` : LOADING;
   }
 
   _show(data) {

@@ -12,13 +12,24 @@ export const title = "3D";
 const LARGEST = 25; // m: larger surfaces are ground, and not what an overview is to show
 const CLOSE = 2.2; // how much larger than the robot the part of the world is that is shown
 
+const LOADING = t("loading …", "正在加载……");
+const NOTHING = t(
+  "Nothing to show yet: start a world, such as `roslaunch learning_topic 0course.launch`, " +
+  "or a robot with robot_description and tf.",
+  "还没有可显示的内容：请启动一个世界，例如 `roslaunch learning_topic 0course.launch`，" +
+  "或带有 robot_description 和 tf 的机器人。");
+
 let open = null;
 
-/** The model that is most likely the robot: of most links. */
-function robotOf(links) {
+const ROBOTS_LINK = /base_(link|footprint)|wheel|chassis/; // as robots' links are called everywhere
+
+/** The model that is most likely the robot: with links of a robot's names; then of most links. */
+export function robotOf(links) {
+  const weight = (groups) => groups.length +
+    (groups.some((group) => ROBOTS_LINK.test(group.name.split("::").pop())) ? 1e6 : 0);
   let best = null;
   for (const [name, groups] of links.models) {
-    if (!best || groups.length > links.models.get(best).length) best = name;
+    if (!best || weight(groups) > weight(links.models.get(best))) best = name;
   }
   return best;
 }
@@ -31,11 +42,7 @@ function roomy(ball, factor) {
 class Tab {
   constructor(parent, link) {
     this._box = element("div", { class: "viewport" });
-    this._hint = element("p", { class: "hint", text: t(
-      "Nothing to show yet: start a world, such as `roslaunch learning_topic 0course.launch`, " +
-      "or a robot with robot_description and tf.",
-      "还没有可显示的内容：请启动一个世界，例如 `roslaunch learning_topic 0course.launch`，" +
-      "或带有 robot_description 和 tf 的机器人。") });
+    this._hint = element("p", { class: "hint", text: LOADING });
     this._follow = element("select", { title: t("follow a model", "跟随模型"),
       onchange: () => this._startFollowing() });
     const button = (english, chinese, look) => element("button",
@@ -81,7 +88,8 @@ class Tab {
   }
 
   _show(scene) {
-    this._hint.hidden = scene.links.length > 0;
+    this._hint.textContent = scene.links.length ? LOADING : NOTHING;
+    this._hint.hidden = false; // until something is drawn
     const ground = !scene.links.length || scene.links.some((link) => link.plane !== null);
     this._viewport.setBackground(scene.background, scene.sky, ground);
     this._links.show(scene);
@@ -116,6 +124,7 @@ class Tab {
   /** Models or meshes are new; until the person turns the view, it shows the robot. */
   _look() {
     if (!this._viewport) return;
+    this._hint.hidden ||= this._links.bounds(null) !== null;
     this._shadows.show(this._links);
     if (!this._viewport.touched) this._lookAtRobot();
     this._viewport.draw();

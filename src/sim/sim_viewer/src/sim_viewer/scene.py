@@ -38,7 +38,7 @@ class SceneBroadcast:
         self._robot = RobotSource(node.shared(Transforms))
         self._shown: Source | None = None
         self._watchers: dict[Send, str] = {}
-        self._scene: dict[str, Any] = NOTHING
+        self._scene: dict[str, Any] | None = None  # None: it is not known yet whether there is one
         self._names: tuple[str, ...] = ()
         self._rows = np.zeros((0, 7), np.float32)
         self._task: asyncio.Task | None = None
@@ -47,7 +47,8 @@ class SceneBroadcast:
         """Send a watcher of `scene` or `poses` the present state and all changes."""
         self._watchers[send] = what
         if what == "scene":
-            send(self._scene)
+            if self._scene is not None:
+                send(self._scene)
         else:
             self._send_poses([send], names=True)
         if self._task is None:
@@ -79,6 +80,8 @@ class SceneBroadcast:
                 if clock() - seen > TIMEOUT:
                     self._simulator.forget()
                     await self._show(self._robot)
+                    if self._scene is None:
+                        self._send_scene(NOTHING)
         finally:
             self._shown = None
             self._simulator.close()
@@ -90,14 +93,18 @@ class SceneBroadcast:
         except Refused:
             pass  # the master is gone; existing connections still send
 
+    def _send_scene(self, scene: dict[str, Any]) -> None:
+        self._scene = scene
+        for send in self._watching("scene"):
+            send(scene)
+
     async def _show(self, source: Source) -> None:
         known, self._shown = source is self._shown, source
         try:
             content = await self._node.run_in_thread(source.scene, known)
             if content is not None:
-                self._scene = await self._node.run_in_thread(page_scene, content, self._meshes)
-                for send in self._watching("scene"):
-                    send(self._scene)
+                self._send_scene(
+                    await self._node.run_in_thread(page_scene, content, self._meshes))
                 # The scene has poses of its own, newer than those that were sent.
                 self._names, self._rows = (), np.zeros((0, 7), np.float32)
             news = await self._node.run_in_thread(source.poses)

@@ -55,7 +55,7 @@ export class DisplayList {
     const kinds = choice("rviz-kind", names.map((name) => [name, short(name)]), names[0], () => {});
     return element("div", { class: "row" }, kinds, element("button", {
       id: "rviz-add", text: t("Add", "添加"), onclick: () => {
-        const display = this._session.add(kinds.value);
+        const display = this._session.add(kinds.value, this._topics);
         this._show(display).open = true;
         this._session.restart(display);
       } }));
@@ -111,6 +111,7 @@ export class DisplayList {
         (this._topics.get(type) ?? []).map((value) => element("option", { value })))),
       onchange: () => {
         display.topic = topic.value.trim();
+        display.topic_is_default = false;
         this._session.restart(display);
       } });
     return [element("label", { class: "option" },
@@ -126,8 +127,13 @@ export class DisplayList {
   _learn(rows) {
     if (!Array.isArray(rows)) return;
     this._topics.clear();
-    for (const { name, type } of rows) {
-      this._topics.set(type, [...(this._topics.get(type) ?? []), name]);
+    for (const { name, type, publishers } of rows) {
+      if (publishers.length) this._topics.set(type, [...(this._topics.get(type) ?? []), name]);
+    }
+    for (const [display, { element: entry }] of this._entries) {
+      if (!this._session.choose(display, this._topics)) continue;
+      entry.querySelector("input.topic").value = display.topic;
+      this._session.restart(display);
     }
   }
 

@@ -26,12 +26,27 @@ export class Session {
     config.displays.forEach((display) => this._add(display));
   }
 
-  /** A display of a class, with its defaults; the new one. */
-  add(name) {
+  /** A display of a class, with its defaults; the new one. `topics`: names by type. */
+  add(name, topics) {
     const kind = this.types.get(name);
     const options = Object.fromEntries(kind.options.map((one) => [one.name, one.default]));
-    return this._add({ class: name, name: name.split("/")[1], enabled: true, topic: kind.topic,
-      options, warnings: [], supported: true });
+    const display = this._add({ class: name, name: name.split("/")[1], enabled: true,
+      topic: kind.topic, options, warnings: [], supported: true, topic_is_default: true });
+    this.choose(display, topics);
+    return display;
+  }
+
+  /** For a display whose topic nobody chose: one that exists. Returns whether it has another now. */
+  choose(display, topics) {
+    if (!display.topic_is_default) return false;
+    const kind = this.types.get(display.class);
+    const there = kind.messages.flatMap((type) => topics.get(type) ?? []);
+    const last = (name) => name.split("/").pop();
+    const found = there.includes(kind.topic) ? kind.topic
+      : there.find((name) => last(name) === last(kind.topic)) ?? there[0];
+    if (!found || found === display.topic) return false;
+    display.topic = found;
+    return true;
   }
 
   _add(display) {

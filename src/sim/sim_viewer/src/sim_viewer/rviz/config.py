@@ -84,9 +84,11 @@ def parse(read: Any) -> dict[str, Any]:
 
 
 def beginning() -> dict[str, Any]:
-    """The configuration without a file; the empty fixed frame stands for any that exists."""
+    """The configuration without a file; the empty fixed frame stands for any that exists, and so do
+    the topics of its displays (`topic_is_default`)."""
     return {"fixed_frame": "", "background": BACKGROUND, "topics": TOPICS, "view": {},
-            "displays": [_display({"Class": name, "Enabled": True}, True) for name in BEGINNING]}
+            "displays": [_display({"Class": name, "Enabled": True}, True)
+                         | {"topic_is_default": True} for name in BEGINNING]}
 
 
 def _displays(listed: Any, where: str, enabled: bool) -> list[dict[str, Any]]:
