@@ -11,6 +11,14 @@ REPORT_PERIOD = 10.0  # s, wall
 SLOW = 0.95  # of the wanted speed; below it there is a warning
 BUSY = 0.5  # of wall time; if all stages together took less, other programs had the processor
 WAITING = "wait"  # for the previous image, the cost of which is counted under drawing
+# What a person can type or change, by the stage that costs most; IMAGES for all others.
+IMAGES = "add camera_width:=640 camera_height:=480 to the roslaunch command"
+ADVICE = {
+    "physics": "use fewer models, or a larger max_step_size in the world file",
+    "plugins": "use fewer robots and sensors, or lower rates in their files",
+    "lockstep": "make the program faster that answers each image",
+}
+OTHERS = "end other programs, which have the processor most of the time: type top"
 
 
 class RealTimeFactorMonitor:
@@ -47,11 +55,11 @@ class RealTimeFactorMonitor:
     def _log_factor(self, factor: float, wanted: float) -> None:
         if factor < SLOW * wanted:
             name, share, all_shares = self._costliest()
-            others = "; most of the time other programs had the processor"
+            advice = OTHERS if all_shares < BUSY else ADVICE.get(name, IMAGES)
             rospy.logwarn(
-                "simulated time runs at %.2f of real time, not %g; what costs most is %s: %.0f ms "
-                "of each second%s", factor, wanted, name, share * 1e3,
-                others if all_shares < BUSY else "")
+                "simulated time runs at %.2f of real time, not %g, and nothing is skipped; what "
+                "costs most is %s: %.0f ms of each second. For more speed: %s", factor, wanted,
+                name, share * 1e3, advice)
         if self._profile:
             self._log_stages()
 
