@@ -112,11 +112,11 @@ def test_files_that_cannot_be_used(tmp_path, content, said):
 
 @pytest.mark.parametrize("typed", ["~/car.urdf", "$HOME/car.urdf"])
 def test_a_name_that_no_shell_has_expanded(monkeypatch, typed):
-    monkeypatch.setenv("HOME", "/home/ann")
+    monkeypatch.setenv("HOME", "/people/ann")
     with pytest.raises(model_source.NoSuchFileError) as caught:
         load("-file", typed)
     assert str(caught.value) == (f"Error: specified file {typed} does not exist; ~ and $ are not "
-                                 "expanded here: write /home/ann/car.urdf")
+                                 "expanded here: write /people/ann/car.urdf")
 
 
 @pytest.mark.parametrize("declaration", ["", '<?xml version="1.0" encoding="gb2312"?>\n',

@@ -234,16 +234,16 @@ def test_where_nothing_can_be_written(tmp_path):
 
 
 @pytest.mark.parametrize("typed, written", [
-    ("~/maps/home", "~ is not expanded here: write /home/ann/maps/home"),
-    ("~", "~ is not expanded here: write /home/ann"),
-    ("$HOME/m", r"$HOME is not expanded here: write /home/ann/m"),
-    ("${HOME}/m", r"${HOME} is not expanded here: write /home/ann/m"),
+    ("~/maps/home", "~ is not expanded here: write /people/ann/maps/home"),
+    ("~", "~ is not expanded here: write /people/ann"),
+    ("$HOME/m", r"$HOME is not expanded here: write /people/ann/m"),
+    ("${HOME}/m", r"${HOME} is not expanded here: write /people/ann/m"),
     ("$NO_SUCH/m", "$NO_SUCH is not expanded here: write the path itself"),
     ("$(find my_car)/maps/m", '$(find my_car) is expanded in launch files only: write '
                               '"$(rospack find my_car)/maps/m"'),
     ("$(env HOME)/m", "$(env HOME) is not expanded here: write the path itself")])
 def test_a_name_that_no_shell_has_expanded(monkeypatch, typed, written):
-    monkeypatch.setenv("HOME", "/home/ann")
+    monkeypatch.setenv("HOME", "/people/ann")
     for attempt in (map_files.check_target, read_map):
         with pytest.raises(MapFileError) as caught:
             attempt(Path(typed))
