@@ -94,3 +94,28 @@ def test_rules_that_submissions_could_read_are_refused(tmp_path):
         shown.unlink()
     assert done.returncode == 2
     assert "every submission could read it there" in done.stderr
+
+
+SMALL_DISK = """
+import os, subprocess, sys
+folder, size = sys.argv[1:3]
+subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", folder], check=True)
+done = subprocess.run(sys.argv[3:], capture_output=True, text=True)
+print(done.returncode, done.stdout, done.stderr)
+"""
+
+
+@pytest.mark.timeout(LIMIT)
+@pytest.mark.skipif(subprocess.run(["unshare", "-rm", "true"]).returncode, reason="no namespaces")
+@pytest.mark.parametrize("size", ["64k", "1500k"])
+def test_a_full_disk_is_no_fault_of_a_submission(tmp_path, size):
+    (tmp_path / "in" / "large").mkdir(parents=True)
+    (tmp_path / "in" / "large" / "follower.py").write_bytes(b"#" * 2_000_000)
+    made_up.write_rules(tmp_path / "marking.yaml")
+    (tmp_path / "out").mkdir()
+    done = subprocess.run(
+        ["unshare", "-rm", sys.executable, "-c", SMALL_DISK, tmp_path / "out", size,
+         *command(tmp_path), "--no-sandbox"], capture_output=True, text=True, timeout=LIMIT)
+    assert done.stdout.startswith("2 ")
+    assert f"mark: no space left for {tmp_path / 'out'}" in done.stdout
+    assert "points," not in done.stdout

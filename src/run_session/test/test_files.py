@@ -1,14 +1,17 @@
 """A file of results is whole, or the one of before."""
 
 import errno
+import os
+import re
 import subprocess
 import sys
 import textwrap
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
-from run_session.files import write_whole
+from run_session.files import check_space, write_whole
 
 # In a process of its own, whose files may get no longer than 1000 bytes: as on a full disk.
 WRITE_TWICE = textwrap.dedent("""
@@ -50,3 +53,16 @@ def test_an_error_names_the_file_that_was_asked_for(tmp_path):
     with pytest.raises(NotADirectoryError) as refused:
         write_whole(tmp_path / "out" / "report.json", b"{}")
     assert refused.value.filename == str(tmp_path / "out" / "report.json")
+
+
+def test_a_full_disk_is_named_and_one_with_room_is_none(tmp_path, monkeypatch):
+    check_space(tmp_path)
+    full = SimpleNamespace(f_bavail=1, f_frsize=4096, f_files=0, f_favail=0)
+    monkeypatch.setattr(os, "statvfs", lambda _folder: full)
+    with pytest.raises(OSError, match=re.escape(str(tmp_path))) as said:
+        check_space(tmp_path)
+    assert said.value.errno == errno.ENOSPC
+    no_more_files = SimpleNamespace(f_bavail=2**20, f_frsize=4096, f_files=100, f_favail=0)
+    monkeypatch.setattr(os, "statvfs", lambda _folder: no_more_files)
+    with pytest.raises(OSError):
+        check_space(tmp_path)

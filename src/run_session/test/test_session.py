@@ -1,9 +1,11 @@
 """A session ends what it has started, and half a drive is none."""
 
+import errno
 import os
 import signal
 import threading
 import time
+from types import SimpleNamespace
 
 import psutil
 import pytest
@@ -73,6 +75,14 @@ def test_a_drive_that_broke_off_leaves_no_report(tmp_path):
     with Session(tmp_path) as session, pytest.raises(RunError, match="a lap: exit code 2"):
         session.start_drive(["python3", "-c", breaks], tmp_path).report(60.0, "a lap")
     assert not (tmp_path / "report.json").exists()
+
+
+def test_a_drive_that_could_not_say_why_for_a_full_disk_names_that(tmp_path, monkeypatch):
+    full = SimpleNamespace(f_bavail=0, f_frsize=4096, f_files=0, f_favail=0)
+    monkeypatch.setattr(os, "statvfs", lambda _folder: full)
+    with Session(tmp_path) as session, pytest.raises(OSError, match=str(tmp_path)) as said:
+        session.start_drive(["python3", "-c", "raise SystemExit(120)"], tmp_path).report(60.0, "a")
+    assert said.value.errno == errno.ENOSPC
 
 
 def test_a_ctrl_c_while_processes_end_leaves_none(tmp_path, type_ctrl_c):

@@ -33,6 +33,7 @@ from marking.sandbox import Kind
 from marking.states import STATE_LOG, bytes_below, sample_of
 from run_session import names
 from run_session.failure import RunError
+from run_session.files import check_space
 from run_session.launch import LOOPBACK, Launched
 from run_session.session import Session
 from run_session.tail import Tail
@@ -56,7 +57,8 @@ class MarkedDrive:
         self._fault, self._time_is_up, self._again = "", False, False
 
     def run(self) -> dict:
-        """The case's report; RunError if the course itself could not be run."""
+        """The case's report; RunError if the course itself could not be run, OSError if not all of
+        it could be recorded."""
         launched = self._session.launched("car", alone=self._case.kind != Kind.NONE.value,
                                           environment=guard.environment(self._folder))
         self._log_folder = launched.log_folder
@@ -77,6 +79,7 @@ class MarkedDrive:
         self._read_logs()
         if course.film:
             launched.end(course.film, FILM_TIME)
+        check_space(self._folder)
         return write_report(self._folder, self._case, self._scorer, self._conduct.violations,
                             self._fault, self._contacts, self._again)
 

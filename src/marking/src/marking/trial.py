@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import errno
 import hashlib
 import os
 import shutil
@@ -113,6 +114,8 @@ class MarkingTrial(ReportedTrial):
             program = prepare(self._submissions[case.student], folder / SUBMISSION,
                               self._rules.program)
         except (UnpackError, OSError) as error:
+            if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+                raise
             self._fault = one_line(str(error))
             return
         self._scene = scene = make_scene(

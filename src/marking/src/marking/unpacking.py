@@ -16,6 +16,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO
 
 from marking.text import file_name, one_line
+from run_session.files import check_space
 
 MOST_BYTES = 64 * 2**20  # of all files together, unpacked
 MOST_FILES = 2000
@@ -50,7 +51,8 @@ def archive_stem(name: str) -> str:
 
 
 def unpack(source: Path, folder: Path) -> None:
-    """Unpack or copy into a new folder; on UnpackError the folder is removed.
+    """Unpack or copy into a new folder; on UnpackError, and on OSError if the disk is full, the
+    folder is removed.
 
     Runs in a process of its own: a header alone can demand any amount of memory or time.
     """
@@ -59,7 +61,10 @@ def unpack(source: Path, folder: Path) -> None:
                sys.executable, "-P", "-m", "marking.unpacking", str(source), str(folder)]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
     if done.returncode:
-        shutil.rmtree(folder, ignore_errors=True)
+        try:
+            check_space(folder.parent)  # before anything is removed
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
         why = done.stdout.decode(errors="replace").strip()
         why = why or (TOO_MUCH if done.returncode < 0 else "cannot be unpacked")  # < 0: a signal
         raise UnpackError(f"{file_name(source.name)}: {why}")

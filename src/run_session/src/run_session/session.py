@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from run_session.failure import RunError
+from run_session.files import check_space
 from run_session.launch import Launched
 from run_session.processes import Child, Family
 from run_session.status_line import StatusLine
@@ -68,7 +69,8 @@ class DriveProcess:
         self._child: Child = family.start("drive", command, environment, folder / "drive.log")
 
     def report(self, limit: float, what: str) -> dict:
-        """Its report.json; RunError if it does not end within `limit`, s, wall, or did not drive.
+        """Its report.json; RunError if it does not end within `limit`, s, wall, or did not drive,
+        OSError if that was because the disk is full.
 
         An interrupted drive leaves no process and no report, so that --resume repeats it.
         """
@@ -84,6 +86,7 @@ class DriveProcess:
         code = self._child.process.returncode
         if code not in DRIVEN or not self._report.exists():
             self._report.unlink(missing_ok=True)
+            check_space(self._report.parent)
             *details, why = self._child.last_lines().splitlines() or [f"exit code {code}"]
             raise RunError(f"{what}: {why}", "\n".join(details))
         return json.loads(self._report.read_text(encoding="utf-8"))

@@ -13,6 +13,7 @@ from evaluation.trial.program import NOT_PASSED, PASSED, complain, run_program
 from evaluation.trial.protocol import REPORT, Case, Trial, try_case
 from evaluation.trial.report import write_json, write_page
 from run_session.failure import RunError
+from run_session.files import check_space
 from run_session.master_choice import own_port
 from run_session.session import Session
 from run_session.status_line import StatusLine
@@ -28,6 +29,7 @@ def _run(trial: Trial, options: argparse.Namespace, arguments: Sequence[str]) ->
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise RunError(f"--out {options.out}: {error.strerror}") from error
+    check_space(options.out)
     _, why_not_callers = own_port()
     if why_not_callers:
         print(why_not_callers[0] % why_not_callers[1:], flush=True)
