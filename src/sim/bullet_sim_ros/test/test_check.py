@@ -333,6 +333,8 @@ def test_xacro_and_cat_are_done_without_running_them(check, tmp_path, command, w
     ('<param name="a" textfile="{}/pipe"/>', "/pipe cannot be read: it is a pipe or device"),
     ('<param name="a" textfile="/dev/zero"/>', "/dev/zero cannot be read: it is a pipe or device"),
     ('<param name="a" value="$(eval 2**2**40)"/>', "takes more than 3 s or 1 GiB; look at its $("),
+    ('<arg name="a" default="$(eval list(range(10**9)))"/>',
+     "Invalid <arg> tag: to read it takes more than 3 s or 1 GiB; look at its $("),
     ('<include file="{}/a.launch"/>', "a.launch includes itself without end; remove the <include>"),
     ('<include file="{}/b.launch"/>', "a.launch includes itself by way of "),
     ("<group>" * 1500 + "</group>" * 1500, "elements are nested too deep"),

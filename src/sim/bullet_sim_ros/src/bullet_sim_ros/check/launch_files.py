@@ -4,7 +4,7 @@ import multiprocessing
 import os
 import re
 import signal
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -120,7 +120,7 @@ def _read(path: Path, arguments: list[str], output: Callable[[str], str] | None,
     limit_memory()
     loader = roslaunch.loader.Loader
     loader.param_value = _remembered(loader.param_value, output, sender)
-    roslaunch.substitution_args.eval = evaluate_substitution
+    roslaunch.substitution_args.eval = _evaluate
     _watch_includes(roslaunch.xmlloader.XmlLoader)
     try:
         config = roslaunch.config.load_config_default(
@@ -133,6 +133,16 @@ def _read(path: Path, arguments: list[str], output: Callable[[str], str] | None,
                            tuple(node.env_args))
               for node in config.nodes),
         {name: parameter.value for name, parameter in config.params.items()}))
+
+
+def _evaluate(expression: str, symbols: dict, local: Mapping) -> object:
+    """As evaluate_substitution; each error has a text, which roslaunch puts into its own."""
+    try:
+        return evaluate_substitution(expression, symbols, local)
+    except Exception as error:
+        if str(error):
+            raise
+        raise SimulationError(_error_line(error)) from error
 
 
 def _error_line(error: Exception) -> str:
