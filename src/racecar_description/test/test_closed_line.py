@@ -71,6 +71,19 @@ def test_offset_to_the_right_of_a_left_circle_is_longer():
         track.offset(0.6)
 
 
+def test_a_line_of_many_corners_is_read_in_time_that_grows_as_it_does(tmp_path):
+    count, path = 8000, tmp_path / "track.yaml"
+    corners = [(40.0 * math.cos(2 * math.pi * i / count), 40.0 * math.sin(2 * math.pi * i / count))
+               for i in range(count)]
+    path.write_text(
+        "name: a\nsize: 100\nmodel_yaw: 0\nline_width: 0.05\nlane_width: 0.3\n"
+        f"start: [{(corners[0][0] + corners[1][0]) / 2:.6f}, {corners[1][1] / 2:.6f}]\ncorners:\n"
+        + "".join(f"- {{x: {x:.6f}, y: {y:.6f}, radius: 0.5}}\n" for x, y in corners))
+    began = time.process_time()
+    assert load_track(path).length == pytest.approx(80 * math.pi, rel=1e-5)
+    assert time.process_time() - began < 8.0  # 1.8; it was 17
+
+
 def test_an_open_line_is_refused():
     with pytest.raises(TrackError, match="gap of"):
         Track((Piece(0, 0, 0, 1.0, 0.0), Piece(1.0, 1e-6, 0.0, 1.0, 0.0)))

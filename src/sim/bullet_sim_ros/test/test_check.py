@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
+import rospkg
 import rospy
 
 from bullet_sim_ros.check import launch_files
@@ -346,6 +347,20 @@ def test_launch_files_that_do_not_end(check, tmp_path, inside, words):
     code, said = check("a.launch", f"<launch>{inside.replace('{}', str(tmp_path))}</launch>")
     (line,) = [line for line in said.splitlines() if "PROBLEM" in line]
     assert code == 1 and words in line, said
+
+
+def test_packages_that_are_not_there_are_looked_for_once(check, monkeypatch):
+    crawled, crawl = [], rospkg.rospack.list_by_path
+    monkeypatch.setattr(rospkg.rospack, "list_by_path",
+                        lambda *what: crawled.append(what) or crawl(*what))
+
+    def folders_crawled(count):
+        crawled.clear()
+        nodes = "".join(f'<node pkg="no_such_{i}" type="t" name="n{i}"/>' for i in range(count))
+        assert check("a.launch", f"<launch>{nodes}</launch>")[1].count("clone it") == count
+        return len(crawled)
+
+    assert folders_crawled(5) == folders_crawled(1) > 0
 
 
 def test_the_memory_of_whoever_asks_does_not_count(check):

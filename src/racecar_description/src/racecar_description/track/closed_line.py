@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from dataclasses import dataclass
+from itertools import accumulate
 from pathlib import Path
 
 from racecar_description.track.centre_line import CentreLine, Piece
@@ -26,8 +28,10 @@ class Track:
 
     def __init__(self, pieces: tuple[Piece, ...]):
         self.pieces = pieces
-        self.begins = tuple(sum(piece.length for piece in pieces[:i]) for i in range(len(pieces)))
-        self.length = sum(piece.length for piece in pieces)
+        self.begins = tuple(accumulate((piece.length for piece in pieces[:-1]), initial=0.0))
+        self._ends = tuple(begin + piece.length
+                           for begin, piece in zip(self.begins, pieces, strict=True))
+        self.length = self._ends[-1]
         self._check_closed()
 
     def _check_closed(self) -> None:
@@ -41,10 +45,8 @@ class Track:
     def pose(self, s: float) -> tuple[float, float, float]:
         """x, y (m) and heading (rad) at s; s may be beyond one lap, or negative."""
         s %= self.length
-        for begin, piece in zip(self.begins, self.pieces, strict=True):
-            if s <= begin + piece.length:
-                return piece.pose(s - begin)
-        return self.pieces[0].pose(0.0)
+        i = bisect_left(self._ends, s)
+        return self.pieces[i].pose(s - self.begins[i])
 
     def nearest(self, x: float, y: float) -> NearestPoint:
         """The line's point closest to x, y."""

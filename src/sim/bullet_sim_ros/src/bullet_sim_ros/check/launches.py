@@ -8,7 +8,7 @@ import re
 import shlex
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import roslib.packages
@@ -37,9 +37,6 @@ OF_OPENCV = "%YAML:"  # no YAML: what cv::FileStorage writes
 SEARCH_PATHS = ("GAZEBO_MODEL_PATH", "GAZEBO_RESOURCE_PATH")
 LARGEST_SCRIPT = 2**20  # bytes
 CALLS_XACRO = re.compile(rb"\bxacro(\.py)?[\s\"',)]|\bxacro\.process_file|import xacro\b")
-
-
-_find_node = cache(roslib.packages.find_node)  # which looks through a whole package
 
 
 def _words(node: LaunchedNode) -> list[str]:
@@ -73,6 +70,9 @@ class LaunchChecker:
         self._run_commands = run_commands
         self._texts = texts
         self._resources = resources
+        packages = rospkg.RosPack()  # each lists all packages, when it is first asked
+        self._find_node = cache(  # which looks through a whole package
+            partial(roslib.packages.find_node, rospack=packages))
 
     def launch_file(self, path: Path, arguments: list[str], alone: bool = True) -> list[Finding]:
         """Findings about its nodes, and about what its simulator and its spawners will load.
@@ -128,7 +128,7 @@ class LaunchChecker:
     def _node(self, node: LaunchedNode, launch: Launch, where: str) -> Iterator[Finding]:
         name = f"node {node.package}/{node.type}"
         try:
-            files = _find_node(node.package, node.type)
+            files = self._find_node(node.package, node.type)
             if not files:
                 yield Finding(where, name, ABSENT, f"package {node.package} has no executable "
                               f"{node.type} here")

@@ -2,6 +2,7 @@
 
 import re
 import time
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -69,7 +70,7 @@ def contents(path: Path) -> dict[str, Any]:
     for a bag that is damaged or was not closed."""
     try:
         with rosbag.Bag(str(path)) as bag:
-            topics = bag.get_type_and_topic_info().topics
+            topics = _topics(bag)
             messages = bag.get_message_count()
             start, end = (bag.get_start_time(), bag.get_end_time()) if messages else (0.0, 0.0)
     except rosbag.ROSBagUnindexedException:
@@ -77,5 +78,18 @@ def contents(path: Path) -> dict[str, Any]:
     except (rosbag.ROSBagException, OSError, ValueError, KeyError) as error:
         raise Refused(f"{path.name} cannot be read: {error}") from None
     return {"duration": end - start, "start": start, "messages": messages,
-            "topics": [{"name": name, "type": facts.msg_type, "count": facts.message_count}
-                       for name, facts in sorted(topics.items())]}
+            "topics": [{"name": name, "type": kind, "count": count}
+                       for name, (kind, count) in sorted(topics.items())]}
+
+
+def _topics(bag: rosbag.Bag) -> dict[str, tuple[str, int]]:
+    """Type and number of messages by topic; `get_type_and_topic_info` takes the square of their
+    number: 7 s for 4000 topics."""
+    counts: Counter[int] = Counter()
+    for chunk in bag._chunks:
+        counts.update(chunk.connection_counts)
+    found: dict[str, tuple[str, int]] = {}
+    for number, connection in bag._connections.items():
+        kind, count = found.get(connection.topic, (connection.datatype, 0))
+        found[connection.topic] = kind, count + counts[number]
+    return found
