@@ -21,6 +21,7 @@ from bullet_sim_ros.check.findings import (
     table,
 )
 from bullet_sim_ros.check.launches import LaunchChecker
+from bullet_sim_ros.check.sources import program_findings
 from bullet_sim_ros.check.texts import TextChecker
 from bullet_sim_ros.interface import read_interface, rows_by_name
 from bullet_sim_ros.package_paths import open_resources
@@ -124,7 +125,7 @@ class Check:
         return self._file(found[0])
 
     def _package(self, folder: Path) -> list[Finding]:
-        findings: list[Finding] = []
+        findings = list(program_findings(folder))
         for pattern in ("*.urdf", "*.xacro", "*.world", "model.sdf", "*.launch"):
             for path in sorted(folder.rglob(pattern)):
                 if path.suffix != ".xacro" or _is_robot(path, folder):
@@ -148,7 +149,8 @@ def workspace_findings(path: Path) -> list[Finding]:
         verdicts = judge(source)
     except WorkspaceError as error:
         return [Finding(f"workspace {path}", "build", PROBLEM, str(error))]
-    found = [finding for verdict in verdicts for finding in _of_package(verdict, path)]
+    found = [finding for verdict in verdicts
+             for finding in (*_of_package(verdict, path), *program_findings(verdict.folder))]
     return [*found, Finding(f"workspace {path}", "what is in the packages", UNCHECKED,
                             "robots, worlds, launch files and YAML are looked at one package at a "
                             "time: rosrun bullet_sim_ros check PACKAGE")]

@@ -26,6 +26,7 @@ from bullet_sim_ros.check.launch_files import (
     read_launch,
 )
 from bullet_sim_ros.check.parameter_commands import XACRO, NotRun
+from bullet_sim_ros.check.sources import script_finding
 from bullet_sim_ros.check.texts import TextChecker
 from bullet_sim_ros.control import controllers, registry  # noqa: F401  (controllers register)
 from bullet_sim_ros.interface import Row
@@ -137,7 +138,7 @@ class LaunchChecker:
             yield Finding(where, name, ABSENT, f"package {node.package} is not here; clone it into "
                           "src/ if it is your own, else see the README's list")
             return
-        yield Finding(where, name, WORKS)
+        yield from list(script_finding(Path(files[0]))) or [Finding(where, name, WORKS)]
         words = _words(node)
         if _runs_xacro(files[0]):
             yield Finding(where, name, UNCHECKED, f"{files[0]} runs xacro; the robot that it makes "
