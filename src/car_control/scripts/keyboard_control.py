@@ -17,6 +17,7 @@ from geometry_msgs.msg import Twist
 
 FLUSH_TIME = 0.2  # s: rospy's threads need this to send before the process ends
 IN_TERMINAL = "rosrun car_control keyboard_control.py --terminal"
+PAGE = "roslaunch sim_viewer viewer.launch control:=true"
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,8 @@ def open_keys(in_terminal):
     try:
         return key_window.KeyWindow().run
     except key_window.NoScreen as error:
-        sys.exit(f"keyboard_control: no screen to open a window on ({error}); type: {IN_TERMINAL}")
+        sys.exit(f"keyboard_control: no screen to open a window on ({error}); type: {IN_TERMINAL}; "
+                 f"or make drive, which starts the car, too; or use the page's tab Drive: {PAGE}")
 
 
 def main():

@@ -152,7 +152,9 @@ class KeyboardAlone(unittest.TestCase):
             self.assertEqual(done.returncode, 1)
             self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
             self.assertIn("no screen to open a window on", done.stderr)
-            self.assertIn("rosrun car_control keyboard_control.py --terminal", done.stderr)
+            for way in ("rosrun car_control keyboard_control.py --terminal", "make drive",
+                        "tab Drive: roslaunch sim_viewer viewer.launch control:=true"):
+                self.assertIn(way, done.stderr)
 
     def test_it_ends_when_the_master_does(self):
         with socket.create_server(("localhost", 0)) as free:
