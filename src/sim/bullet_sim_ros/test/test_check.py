@@ -187,6 +187,8 @@ def test_a_launch_file_with_its_robot_and_its_nodes(check, tmp_path):
     assert "parameter /robot_description\n  works         model r" in said
     code, said = check("a.launch", LAUNCH.format("robot_description", "no_such_pkg", "x"))
     assert code == 1 and "NOT THERE     node no_such_pkg/x: package no_such_pkg is not here" in said
+    code, said = check("a.launch", LAUNCH.format("robot_description", "slam_karto", "x"))
+    assert code == 1 and "package slam_karto is not here: not in Debian; gmapping makes" in said
     code, said = check("a.launch", LAUNCH.format("robot_descr", "gazebo_ros", "no_such"))
     assert code == 1
     assert "node gazebo_ros/no_such: package gazebo_ros has no executable no_such" in said

@@ -14,6 +14,7 @@ from pathlib import Path
 import roslib.packages
 import rospkg
 import yaml
+from workspace_needs.tables import DEBIAN, Tables
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats import Resources
@@ -38,6 +39,19 @@ OF_OPENCV = "%YAML:"  # no YAML: what cv::FileStorage writes
 SEARCH_PATHS = ("GAZEBO_MODEL_PATH", "GAZEBO_RESOURCE_PATH")
 LARGEST_SCRIPT = 2**20  # bytes
 CALLS_XACRO = re.compile(rb"\bxacro(\.py)?[\s\"',)]|\bxacro\.process_file|import xacro\b")
+
+
+@cache
+def _tables() -> Tables:
+    return Tables()
+
+
+def _why_absent(package: str) -> str:
+    """Why there is no such package, or how it is had."""
+    answer = _tables().answer(package)
+    if answer.kind == DEBIAN:
+        return f"sudo apt-get install {' '.join(answer.packages)}"
+    return answer.why or "source devel/setup.bash of its workspace first"
 
 
 def _words(node: LaunchedNode) -> list[str]:
@@ -135,8 +149,8 @@ class LaunchChecker:
                               f"{node.type} here")
                 return
         except rospkg.ResourceNotFound:
-            yield Finding(where, name, ABSENT, f"package {node.package} is not here; clone it into "
-                          "src/ if it is your own, else see the README's list")
+            yield Finding(where, name, ABSENT,
+                          f"package {node.package} is not here: {_why_absent(node.package)}")
             return
         yield from list(script_finding(Path(files[0]))) or [Finding(where, name, WORKS)]
         words = _words(node)
