@@ -33,7 +33,7 @@ INSTRUMENTS = re.compile(
 PAGE = re.compile(
     r"src/sim/sim_viewer/src/sim_viewer/"
     r"(rviz/(?!config)|tools/|(?!node|options|restart|server|guard)\w+\.py)")
-SCRIPTS = ("scripts/own_packages.py", "scripts/build_cause.py")  # setup runs them
+SCRIPTS = ("scripts/own_packages.py",)  # setup runs them
 WORD = re.compile(r"(?<![\w/.-])[A-Za-z]?[a-z']+(?![\w/-]|\.[a-z])")
 DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 FORMAT = re.compile(r"%(?:\(\w+\))?[-+0]*[0-9]*(?:\.[0-9]+)?[sdrfgix]|\{[^{} ]*\}")

@@ -19,8 +19,12 @@ ROS = re.compile(
 
 
 def our_packages() -> set[str]:
-    """Names of catkin packages and of the Python packages in them."""
-    manifests = list(ROOT.glob("src/**/package.xml"))
+    """Names of catkin packages and of the Python packages in them.
+
+    What is two files for CMake alone has no module: tf2_geometry_msgs is Debian's in Python.
+    """
+    manifests = [path for path in ROOT.glob("src/**/package.xml")
+                 if len(list(path.parent.iterdir())) > 2]
     modules = [init.parent for m in manifests for init in m.parent.glob("src/*/__init__.py")]
     return {m.parent.name for m in manifests} | {folder.name for folder in modules}
 

@@ -22,8 +22,11 @@ PACKAGE = """<?xml version="1.0"?>
 """
 
 
-def load(name: str):
-    spec = importlib.util.spec_from_file_location(name, ROOT / "scripts" / f"{name}.py")
+BUILD_CAUSE = ROOT / "src/workspace_needs/src/workspace_needs/build_cause.py"
+
+
+def load(path: Path):
+    spec = importlib.util.spec_from_file_location(path.stem, path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -140,7 +143,7 @@ CMake Error at /usr/share/catkin/cmake/safe_execute_process.cmake:11 (message):
 def test_a_failed_build_shows_its_first_cause(kind, tmp_path):
     text, wanted = CAUSES[kind]
     (tmp_path / "build.log").write_text(text)
-    done = subprocess.run([SETUP_PYTHON, ROOT / "scripts/build_cause.py", tmp_path / "build.log"],
+    done = subprocess.run([SETUP_PYTHON, BUILD_CAUSE, tmp_path / "build.log"],
                           text=True, capture_output=True)
     for said in wanted:
         assert said in done.stdout
@@ -148,7 +151,7 @@ def test_a_failed_build_shows_its_first_cause(kind, tmp_path):
 
 
 def test_a_build_that_went_well_has_no_cause():
-    assert load("build_cause").cause("-- ok\n[100%] Built target a\n") == []
+    assert load(BUILD_CAUSE).cause("-- ok\n[100%] Built target a\n") == []
 
 
 @pytest.mark.parametrize(("path", "expected"), [

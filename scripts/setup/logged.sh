@@ -25,7 +25,7 @@ fail_with_log() {
 }
 # The same for a build: the first cause in the build's output.
 fail_with_cause() {
-  python3 "$root/scripts/build_cause.py" "$state/build.log" 2>&1 | translated >&2
+  python3 "$root/src/workspace_needs/src/workspace_needs/build_cause.py" "$state/build.log" 2>&1 | translated >&2
   fail "$1 "$"(full log: .setup/build.log)"
 }
 network_failed() {

@@ -115,8 +115,24 @@ def test_every_key_is_a_package_that_apt_knows():
     assert [name for name in sorted(asked - known) if not has_provider(name)] == []
 
 
+@pytest.mark.parametrize("key, meant", [
+    ("rospyy", "rospy"), ("std_msg", "std_msgs"), ("robot_localisation", "robot_localization"),
+    ("controller_manger", "controller_manager"), ("python-numpi", "python-numpy")])
+def test_what_is_mistyped_is_named_right(key, meant):
+    assert Tables().answer(key).why.endswith(f"is {meant} meant?")
+
+
+@pytest.mark.parametrize("key", [
+    "compressed_image_transport", "costmap_2d_plugins", "hector_nav_msgs", "mbf_msgs", "nav2d",
+    "nav_2d_msgs", "turtlebot2_gazebo", "turtlebot3_applications", "tf2_web_republisher",
+    "image_publisher", "rosbridge_msgs", "navfn2", "yocs_msgs", "map_merger", "gazebo2rviz"])
+def test_the_name_of_another_package_is_not_said_to_be_mistyped(key):
+    assert "meant?" not in Tables(of_release="bookworm").answer(key).why
+
+
 @pytest.mark.parametrize("key, package", [
-    ("roscpp", "libroscpp-dev"), ("cv_bridge", "libcv-bridge-dev"), ("eigen", "libeigen3-dev"),
+    ("bfl", "liborocos-bfl-dev"), ("roscpp", "libroscpp-dev"), ("cv_bridge", "libcv-bridge-dev"),
+    ("eigen", "libeigen3-dev"),
     ("cv_bridge", "python3-cv-bridge"), ("python-numpy", "python3-numpy"), ("sdl", "libsdl1.2-dev"),
     ("nodelet", "libnodeletlib-dev"), ("common_msgs", "libnav-msgs-dev"), ("tf", "libtf-dev"),
     ("libpcl-all-dev", "libpcl-dev"), ("opencv3", "libopencv-dev"), ("yaml-cpp", "libyaml-cpp-dev"),

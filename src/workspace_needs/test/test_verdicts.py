@@ -2,6 +2,7 @@
 
 import pytest
 from workspace_needs.build_commands import catkin_make_isolated_words, catkin_make_words
+from workspace_needs.places import hook
 from workspace_needs.tables import Tables
 from workspace_needs.verdicts import judge
 from workspace_needs.workspace import OUR_ADDRESS, WorkspaceError, source_folder
@@ -19,6 +20,14 @@ def bare(monkeypatch):
         "list": lambda self: []})())
 
 
+@pytest.fixture(scope="module", autouse=True)
+def kept(tmp_path_factory):
+    """A folder for what is kept of one test for the next."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_HOME", str(tmp_path_factory.mktemp("ros_home")))
+        yield
+
+
 def of(source, name):
     return next(verdict for verdict in judge(source) if verdict.name == name)
 
@@ -27,7 +36,7 @@ def test_a_workspace_like_turtlebot3s_needs_what_debian_has(tmp_path, bare):
     source = turtlebot3_style(tmp_path)
     bringup, simulation = of(source, "burger_bringup"), of(source, "burger_gazebo")
     assert bringup.missing["libroscpp-dev"] == "roscpp"
-    assert "libinteractive-markers-dev" in bringup.missing  # only CMakeLists.txt asks for it
+    assert "libdynamicedt3d-dev" in bringup.missing  # only CMakeLists.txt asks for it
     assert "ros-image-view" in simulation.missing  # only a launch file does
     assert bringup.builds and simulation.builds and not simulation.left_out
 
@@ -53,10 +62,10 @@ def test_what_another_release_has_is_said(tmp_path, bare):
 
 def test_a_plugin_of_gazebo_in_cpp_is_left_out_alone(tmp_path, bare):
     folder = add_package(tmp_path / "src", "plugin", "gazebo_ros", "gazebo_ros",
-                         "find_package(gazebo REQUIRED)")
+                         "find_package(gazebo REQUIRED)\nadd_library(p src/p.cpp)")
     (folder / "src" / "p.cpp").write_text("#include <gazebo/gazebo.hh>\n", encoding="utf-8")
     verdict = of(tmp_path / "src", "plugin")
-    assert verdict.builds and "includes <gazebo/gazebo.hh>" in verdict.left_out["src/p.cpp"]
+    assert verdict.builds and "includes <gazebo/gazebo.hh>" in verdict.left_out["target p"]
 
 
 def test_a_lesson_that_is_copied_is_the_learners(tmp_path, bare):
@@ -103,11 +112,13 @@ def test_what_no_catkin_can_build_is_left_out(tmp_path, bare):
     assert "git clone -b noetic" in of(source, "newer").stops["ament_cmake"]
 
 
-def test_what_cmake_may_find_although_no_list_has_it_is_said_to_be_unsure(tmp_path, bare):
-    folder = add_package(tmp_path / "src", "a", "", "", "find_package(Wibble REQUIRED)\n"
-                         "find_package(BISON REQUIRED)\nfind_package(Own REQUIRED)")
-    (folder / "FindOwn.cmake").touch()
-    assert of(tmp_path / "src", "a").unsure == ["Wibble"]
+def test_what_cmake_finds_although_no_list_has_it_is_there(tmp_path, bare):
+    folder = add_package(tmp_path / "src", "a", "", "", "set(CMAKE_MODULE_PATH "
+                         "${CMAKE_CURRENT_SOURCE_DIR})\nfind_package(Own REQUIRED)")
+    (folder / "FindOwn.cmake").write_text("set(Own_FOUND TRUE)", encoding="utf-8")
+    add_package(tmp_path / "src", "b", "", "", "find_package(Wibble REQUIRED)")
+    assert of(tmp_path / "src", "a").builds
+    assert list(of(tmp_path / "src", "b").stops) == ["Wibble"]
 
 
 @pytest.mark.parametrize("made, words", [
@@ -136,14 +147,14 @@ def test_catkin_make_leaves_out_what_cannot_be_built(tmp_path, capsys, monkeypat
     add_package(tmp_path / "src", "arm", "moveit_core", "moveit_core")
     add_package(tmp_path / "src", "wheel", "", "")
     option = "-DCATKIN_BLACKLIST_PACKAGES=arm"
-    assert catkin_make_words(["-C", str(tmp_path)]) == [option, "-C", str(tmp_path)]
+    assert catkin_make_words(["-C", str(tmp_path)]) == [*hook(), option, "-C", str(tmp_path)]
     assert capsys.readouterr().out.startswith("arm is left out: moveit_core: MoveIt is not")
     monkeypatch.chdir(tmp_path)
-    assert catkin_make_words(["--make-args", "-j2"]) == [option, "--make-args", "-j2"]
+    assert catkin_make_words(["--make-args", "-j2"]) == [*hook(), option, "--make-args", "-j2"]
     chosen = ["-DCATKIN_WHITELIST_PACKAGES=arm"]
-    assert catkin_make_words(chosen) == chosen
+    assert catkin_make_words(chosen) == [*hook(), *chosen]
     monkeypatch.chdir(tmp_path / "src")
-    assert "arm" not in catkin_make_words([])[0]  # catkin_make says that this is no workspace
+    assert "arm" not in catkin_make_words([])[1]  # catkin_make says that this is no workspace
 
 
 @pytest.mark.parametrize("typed, given", [
@@ -155,4 +166,4 @@ def test_catkin_make_leaves_out_what_cannot_be_built(tmp_path, capsys, monkeypat
 def test_catkin_make_isolated_does_too(tmp_path, monkeypatch, bare, typed, given):
     add_package(tmp_path / "src", "arm", "moveit_core", "moveit_core")
     monkeypatch.chdir(tmp_path)
-    assert catkin_make_isolated_words(typed.split()) == given.split()
+    assert catkin_make_isolated_words(typed.split()) == [*hook(), *given.split()]

@@ -31,7 +31,7 @@ def turtlebot3_style(workspace: Path) -> Path:
     add_package(source, "burger_msgs", "std_msgs message_generation message_runtime",
                 "std_msgs message_generation")
     add_package(source, "burger_bringup", "roscpp rospy tf diagnostic_msgs burger_msgs python-yaml",
-                "roscpp tf  # and what package.xml forgot\n  interactive_markers diagnostic_msgs")
+                "roscpp tf  # and what package.xml forgot\n  dynamic_edt_3d diagnostic_msgs")
     simulation = add_package(source, "burger_gazebo", "gazebo_ros burger_bringup", "gazebo_ros",
                              "find_package(gazebo REQUIRED)", style=1)
     (simulation / "launch").mkdir()

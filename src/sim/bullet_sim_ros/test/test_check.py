@@ -452,6 +452,7 @@ def test_a_workspace_before_it_is_built(tmp_path, capsys):
             "<description>d</description><maintainer email='a@example.com'>a</maintainer>"
             "</package>")
         (folder / "CMakeLists.txt").write_text(
+            f"cmake_minimum_required(VERSION 3.0.2)\nproject({name})\n"
             f"find_package(catkin REQUIRED COMPONENTS {component})")
     code = main([str(tmp_path)])
     said = capsys.readouterr().out

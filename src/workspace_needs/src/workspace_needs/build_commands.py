@@ -3,7 +3,8 @@
 A package with a dependency that nobody provides must not stop the others: catkin_make configures
 all packages in one run of CMake, which ends at the first missing component, and the other two fail
 at that package. So such packages are left out, with a printed line, by each tool's own means:
-CATKIN_BLACKLIST_PACKAGES, --ignore-pkg, the skiplist.
+CATKIN_BLACKLIST_PACKAGES, --ignore-pkg, the skiplist. All learners' packages are configured with
+missing_headers.cmake, which mends what upstream's headers allow and Debian's do not.
 """
 
 from __future__ import annotations
@@ -15,8 +16,9 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
-from workspace_needs.verdicts import judge
-from workspace_needs.workspace import WorkspaceError
+from workspace_needs.places import hook
+from workspace_needs.verdicts import Verdict, judge
+from workspace_needs.workspace import WorkspaceError, hide
 
 FOLDER = "/usr/bin"  # where Debian's own commands are
 CHOSEN = ("--pkg", "--from-pkg")  # catkin_make_isolated takes no --ignore-pkg with these
@@ -30,9 +32,9 @@ def catkin_make() -> NoReturn:
 def catkin_make_words(args: list[str]) -> list[str]:
     """`args`, with options that leave out packages, unless `args` choose packages themselves."""
     if any("LIST_PACKAGES" in word for word in args):
-        return args
+        return [*hook(), *args]
     names = left_out("catkin_make", args, _source(args))
-    return [f"-DCATKIN_BLACKLIST_PACKAGES={';'.join(names)}", *args]
+    return [*hook(), f"-DCATKIN_BLACKLIST_PACKAGES={';'.join(names)}", *args]
 
 
 def catkin_make_isolated() -> NoReturn:
@@ -43,14 +45,14 @@ def catkin_make_isolated() -> NoReturn:
 def catkin_make_isolated_words(args: list[str]) -> list[str]:
     """`args`, with options that leave out packages, unless `args` choose packages themselves."""
     if {word.partition("=")[0] for word in args} & set(CHOSEN):
-        return args
+        return [*hook(), *args]
     names = left_out("catkin_make_isolated", args, _source(args))
     if not names:
-        return args
+        return [*hook(), *args]
     option = "--ignore-pkg"
     place = args.index(option) + 1 if option in args else 0
     # Not after --cmake-args, which takes all that follows.
-    return [*args[:place], *([] if place else [option]), *names, *args[place:]]
+    return [*hook(), *args[:place], *([] if place else [option]), *names, *args[place:]]
 
 
 def catkin() -> int:
@@ -76,13 +78,16 @@ def catkin() -> int:
             if context and "--get-env" not in args:
                 cls.names = left_out("catkin build", args, Path(context.source_space_abs))
                 context.skiplist = [*context.skiplist, *cls.names]
+                context.cmake_args = [*context.cmake_args, *hook()]
             return context
 
         @classmethod
         def save(cls, context):
             context.skiplist = [name for name in context.skiplist if name not in cls.names]
+            context.cmake_args = [word for word in context.cmake_args if word not in hook()]
             super().save(context)
             context.skiplist = [*context.skiplist, *cls.names]
+            context.cmake_args = [*context.cmake_args, *hook()]
 
     cli.Context = BuildContext
     return main(args)
@@ -97,19 +102,33 @@ def left_out(tool: str, args: list[str], source: Path) -> list[str]:
     if {"-h", "--help"} & set(args) or not source.is_dir():
         return []
     try:
-        verdicts = judge(source)
-    except WorkspaceError as error:
+        verdicts = judge(source, words=args)
+        for verdict in verdicts:
+            if verdict.hides_ours:
+                hide(verdict.folder)
+            if tool == "catkin_make":
+                verdict.stops.update(verdict.clashes)
+    except (WorkspaceError, OSError) as error:
         sys.exit(f"{tool}: {error}")
     stopped = [verdict for verdict in verdicts if verdict.stops]
-    for verdict in stopped:
+    for name, verdict in _by_name(stopped):
         key, why = next(iter(verdict.stops.items()))
-        print(f"{verdict.name} is left out: {key}: {why}", flush=True)
+        print(f"{name} is left out: {key}: {why}", flush=True)
     missing = sorted({name for verdict in verdicts if not verdict.stops
                       for name in verdict.missing if name.endswith("-dev")})
     if missing:
         print(f"Not installed, if the build stops: {' '.join(missing)}; "
               f"rosrun workspace_needs deps {source.resolve().parent}", flush=True)
     return [verdict.name for verdict in stopped]
+
+
+def _by_name(stopped: list[Verdict]) -> list[tuple[str, Verdict]]:
+    """The verdicts, with one for all that hide ours, which are mostly one clone."""
+    hiding = [verdict for verdict in stopped if verdict.hides_ours]
+    named = [(verdict.name, verdict) for verdict in stopped if not verdict.hides_ours]
+    if hiding:
+        named.insert(0, (", ".join(verdict.name for verdict in hiding), hiding[0]))
+    return named
 
 
 def _become(tool: str, args: list[str]) -> NoReturn:

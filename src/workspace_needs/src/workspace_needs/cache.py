@@ -13,7 +13,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from workspace_needs.places import package_folder
+from workspace_needs.places import kept_folder, package_folder
 
 STAMP = "made-from"
 
@@ -21,24 +21,12 @@ STAMP = "made-from"
 def enter() -> Path:
     """Points rosdep to our files and the cache, which is made if needed; returns its folder."""
     files = package_folder() / "rosdep"
-    home = _home()
+    home = kept_folder("rosdep-courses")
     stamp = _stamp(files)
     if not (home / STAMP).is_file() or (home / STAMP).read_text("utf-8") != stamp:
         _make(files, home, stamp)
     _point_to(files, home)
     return home
-
-
-def _home() -> Path:
-    """~/.ros/rosdep-courses, or a folder in /tmp if that is not writable."""
-    parent = Path(os.environ.get("ROS_HOME") or Path.home() / ".ros")
-    try:
-        parent.mkdir(parents=True, exist_ok=True)
-        if os.access(parent, os.W_OK):
-            return parent / "rosdep-courses"
-    except OSError:
-        pass
-    return Path(tempfile.gettempdir()) / f"rosdep-courses-{os.geteuid()}"
 
 
 def _stamp(files: Path) -> str:

@@ -20,19 +20,29 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--simulate", action="store_true", help="only say what would be installed")
     args = parser.parse_args(argv)
     try:
-        verdicts = judge(source_folder(args.workspace))
+        verdicts = _provide(source_folder(args.workspace), args.simulate)
     except WorkspaceError as error:
         print(f"deps: {error}", file=sys.stderr)
         return 2
-    missing = sorted({name for verdict in verdicts for name in verdict.missing})
-    try:
-        _install(missing, len(verdicts), args.simulate)
     except apt.AptError as error:
         print(f"deps: {error}", file=sys.stderr)
         return 1
     for line in not_to_be_had(verdicts):
         print(line)
     return 0
+
+
+def _provide(source: Path, simulate: bool) -> list[Verdict]:
+    """Installs what is missing, and what CMake comes to ask for once it has found that."""
+    tried: set[str] = set()
+    while True:
+        verdicts = judge(source)
+        missing = {name for verdict in verdicts for name in verdict.missing} - tried
+        if missing or not tried:
+            _install(sorted(missing), len(verdicts), simulate)
+        if simulate or not missing:
+            return verdicts
+        tried |= missing
 
 
 def _install(missing: list[str], packages: int, simulate: bool) -> None:
@@ -54,12 +64,12 @@ def not_to_be_had(verdicts: Iterable[Verdict]) -> list[str]:
     for verdict in verdicts:
         lines += [f"{verdict.name} cannot be built: {key}: {why}"
                   for key, why in verdict.stops.items()]
+        lines += [f"{verdict.name} cannot be built by catkin_make: {key}: {why}"
+                  for key, why in verdict.clashes.items()]
         lines += [f"{verdict.name}: {file} is left out: {why}"
                   for file, why in verdict.left_out.items()]
         lines += [f"{verdict.name} will be without {key}: {why}"
                   for key, why in verdict.lacks.items()]
-        lines += [f"{verdict.name} asks CMake for {key}, which no list here has: install it "
-                  "yourself if the build stops there" for key in verdict.unsure]
     return lines
 
 

@@ -16,6 +16,7 @@ import yaml
 from workspace_needs.places import package_folder, release
 
 OURS, DEBIAN, ABSENT, UNKNOWN = "ours", "debian", "absent", "unknown"
+KEYS = ("what", "why", "keys", "headers", "in_ours")  # of a row of absent.yaml
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 # Forms of Debian names (lib..., hyphens) that ROS packages never have, so that none is confused.
 RELEASES = {"bookworm": "Debian 12", "trixie": "Debian 13"}
@@ -34,6 +35,7 @@ class Absence:
     why: str
     keys: tuple[str, ...]
     headers: tuple[str, ...]
+    in_ours: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -83,6 +85,22 @@ class Tables:
     @staticmethod
     def _named(release: str) -> str:
         return RELEASES.get(release, release or "this system")
+    def answer_cmake(self, name: str) -> Answer:
+        """The same for a name in find_package or pkg_check_modules, mostly a key itself."""
+        answer = self.answer(name)
+        if answer.kind in (OURS, DEBIAN):
+            return answer
+        if name in self.cmake_names:
+            return self.answer(self.cmake_names[name])
+        if answer.kind == ABSENT:
+            return answer
+        library = next((choice for choice in (f"{name}-dev", f"lib{name}-dev")
+                        if choice in self._apt_names), None)
+        return Answer(DEBIAN, (library,)) if library else answer
+
+    def why_ours_stays(self, package: str) -> str:
+        """Why a workspace's package of this name must not be found before ours; "" if it may."""
+        return next((row.why for row in self.absences if package in row.in_ours), "")
 
     def absence(self, key: str) -> Absence | None:
         """Why nobody has `key`, if that is known."""
@@ -95,7 +113,8 @@ class Tables:
         return next((row for row in self.absences if slash and folder in row.headers), None)
 
     def _nobody(self, key: str) -> str:
-        similar = get_close_matches(key, [*self.ours, *self.debian], 1, 0.85)
+        similar = [name for name in get_close_matches(key, [*self.ours, *self.debian], 3, 0.85)
+                   if name != key and _is_slip(key, name)]
         if similar:
             return f"nobody has that name; is {similar[0]} meant?"
         return ("neither Debian nor this repository has it; clone its source into src/, or mend "
@@ -111,18 +130,26 @@ class Tables:
         return frozenset(listed.split())
 
 
+def _is_slip(typed: str, name: str) -> bool:
+    """Whether `typed` is `name` mistyped, and not another package's name (turtlebot_msgs)."""
+    words, others = typed.split("_"), name.split("_")
+    if len(words) != len(others) or re.findall(r"\d+", typed) != re.findall(r"\d+", name):
+        return typed.replace("_", "-") == name.replace("_", "-")
+    wrong = [(word, other) for word, other in zip(words, others) if word != other]
+    return len(wrong) == 1 and bool(get_close_matches(wrong[0][0], [wrong[0][1]], 1, 0.75))
+
+
 def read_absences(path: Path) -> list[Absence]:
     """The rows; TableError names an unknown or missing key."""
     rows = []
     for number, row in enumerate(yaml.load(path.read_text("utf-8"), LOADER), 1):
         where = f"{path.name}, row {number}"
         for key in row:
-            if key not in ("what", "why", "keys", "headers"):
-                raise TableError(f"{where}: unknown key {key!r}; there are what, why, keys, "
-                                 "headers")
+            if key not in KEYS:
+                raise TableError(f"{where}: unknown key {key!r}; there are {', '.join(KEYS)}")
         for key in ("what", "why", "keys"):
             if not row.get(key):
                 raise TableError(f"{where}: {key} is missing")
         rows.append(Absence(row["what"], row["why"], tuple(row["keys"]),
-                            tuple(row.get("headers", ()))))
+                            tuple(row.get("headers", ())), tuple(row.get("in_ours", ()))))
     return rows

@@ -9,12 +9,11 @@ from pathlib import Path
 
 import rospkg
 
-from workspace_needs.tables import ABSENT, DEBIAN, OURS, UNKNOWN, Answer, Tables
-from workspace_needs.workspace import Asked, Package, read_workspace
+from workspace_needs.configuring import Configured, configure
+from workspace_needs.tables import DEBIAN, OURS, Answer, Tables
+from workspace_needs.workspace import Package, read_workspace
 
-# Names in find_package that come with CMake or catkin, or that have a Find script.
-WITH_CMAKE = {"catkin", "Threads", "PkgConfig", "PythonInterp", "PythonLibs", "Python", "Python3",
-              "Doxygen", "OpenMP", "Java", "Git", "Matlab", "CUDA"}
+INCLUDE_FOLDERS = ("/usr/include", "/usr/local/include")
 
 
 @dataclass
@@ -26,8 +25,9 @@ class Verdict:
     missing: dict[str, str] = field(default_factory=dict)  # Debian package: the key that needs it
     stops: dict[str, str] = field(default_factory=dict)  # obstacle to building it: reason
     lacks: dict[str, str] = field(default_factory=dict)  # missing, but not needed to build: reason
-    left_out: dict[str, str] = field(default_factory=dict)  # source file not compiled: reason
-    unsure: list[str] = field(default_factory=list)  # names in no table, which CMake may find
+    left_out: dict[str, str] = field(default_factory=dict)  # target or source file: reason
+    clashes: dict[str, str] = field(default_factory=dict)  # stops for catkin_make alone: reason
+    hides_ours: bool = False  # it is left out because our package of its name must be found
 
     @property
     def builds(self) -> bool:
@@ -35,82 +35,122 @@ class Verdict:
         return not self.stops
 
 
-def judge(source: Path, tables: Tables | None = None) -> list[Verdict]:
+def judge(source: Path, tables: Tables | None = None, words: Iterable[str] = ()) -> list[Verdict]:
     """A verdict for each package below `source` that does not belong to this repository.
 
-    WorkspaceError if no build tool can build any.
+    `words`: the -D options with which the workspace is built. WorkspaceError if no build tool can
+    build any.
     """
     tables = tables or Tables()
     packages = [package for package in read_workspace(source) if not package.is_ours]
-    names = {package.name for package in packages}
-    known = names | set(rospkg.RosPack().list())
-    answers = {asked.key: _answer(asked.key, tables, names)
-               for package in packages for asked in package.asked}
-    installed = installed_packages(name for answer in answers.values() for name in answer.packages)
-    verdicts = [_verdict(package, answers, installed, known, tables) for package in packages]
-    _pass_on(packages, verdicts)
+    hidden = {package.name: why for package in packages
+              if (why := tables.why_ours_stays(package.name))}
+    configured = configure((each for each in packages if each.name not in hidden), words)
+    judgement = _Judgement(packages, configured, tables)
+    verdicts = [Verdict(package.name, package.folder, hides_ours=True,
+                        stops={"ours is used": hidden[package.name]})
+                if package.name in hidden else judgement.of(package) for package in packages]
+    _pass_on(configured, verdicts)
+    _note_clashes(configured, verdicts)
     return verdicts
 
 
-def _answer(key: str, tables: Tables, names: set[str]) -> Answer:
-    if key in names or key in WITH_CMAKE:
-        return Answer(OURS)
-    answer = tables.answer(key)
-    if answer.kind in (UNKNOWN, ABSENT) and key in tables.cmake_names:
-        return tables.answer(tables.cmake_names[key])
-    return answer
+class _Judgement:
+    """What is known of all packages of a workspace together."""
 
+    def __init__(self, packages: list[Package], configured: dict[str, Configured],
+                 tables: Tables):
+        self._tables = tables
+        self._configured = configured
+        self._names = {package.name for package in packages}
+        self._known = self._names | set(rospkg.RosPack().list())
+        keys = {asked.key for package in packages for asked in package.asked}
+        keys |= {name for result in configured.values() for name in result.absent}
+        keys |= {header.partition("/")[0] for package in packages
+                 for header, _ in package.includes if "/" in header}
+        self._answers = {key: self._answer(key) for key in keys}
+        self._installed = installed_packages(
+            name for answer in self._answers.values() for name in answer.packages)
 
-def _verdict(package: Package, answers: dict[str, Answer], installed: set[str], known: set[str],
-             tables: Tables) -> Verdict:
-    verdict = Verdict(package.name, package.folder)
-    if package.unfit:
-        verdict.stops = dict(package.unfit)
+    def _answer(self, key: str) -> Answer:
+        return Answer(OURS) if key in self._names else self._tables.answer_cmake(key)
+
+    def of(self, package: Package) -> Verdict:
+        """The verdict on one package, not yet on those that it depends on."""
+        verdict = Verdict(package.name, package.folder, stops=dict(package.unfit))
+        if not verdict.builds:
+            return verdict
+        result = self._configured.get(package.name)
+        if result and result.error:
+            self._blame(verdict, result)
+        for asked in package.asked:
+            if not self._missing(verdict, asked.key) and asked.key not in self._known | {
+                    *verdict.stops} and self._answers[asked.key].kind not in (OURS, DEBIAN):
+                verdict.lacks.setdefault(
+                    asked.key, f"{self._answers[asked.key].why} ({asked.where} asks for it)")
+        self._look_at_includes(verdict, package)
+        if result and not result.error:
+            verdict.left_out = {f"target {target}": why for target, why in result.left_out}
         return verdict
-    for asked in package.asked:
-        answer = answers[asked.key]
-        if answer.kind == DEBIAN:
-            verdict.missing.update(
-                {name: asked.key for name in answer.packages if name not in installed})
-        elif asked.of_cmake and answer.kind == UNKNOWN:
-            if not _has_module(asked.key, package.folder):
-                verdict.unsure.append(asked.key)
-        elif not (answer.kind == OURS or asked.key in known or _is_gazebo(asked)):
-            said = f"{answer.why} ({asked.where} asks for it)"
-            place = verdict.stops if asked.stops else verdict.lacks
-            place.setdefault(asked.key, said)
-    for header, file in package.includes:
-        absence = tables.missing_header(header)
-        if absence and not any(package.folder.glob(f"**/{header}")):
-            verdict.left_out.setdefault(file, f"it includes <{header}>: {absence.why}")
-    for key in verdict.stops:
-        verdict.lacks.pop(key, None)
-    return verdict
+
+    def _missing(self, verdict: Verdict, key: str) -> bool:
+        """Whether Debian packages for a key are not installed; they are noted."""
+        missing = {name: key for name in self._answers[key].packages
+                   if name not in self._installed}
+        verdict.missing.update(missing)
+        return bool(missing)
+
+    def _blame(self, verdict: Verdict, result: Configured) -> None:
+        """Notes why CMake ended with an error: what is absent, else the error itself."""
+        explained = False
+        for name in result.absent:
+            kind = self._answers[name].kind
+            if self._missing(verdict, name) or kind == OURS or name == "gazebo":
+                explained = True  # to be installed or built first
+            elif kind != DEBIAN:  # what is installed is there in another version, say
+                verdict.stops[name] = f"{self._answers[name].why} (CMakeLists.txt asks for it)"
+        if not explained and verdict.builds:
+            place, _, said = result.error.partition(": ")
+            verdict.stops[place if said else "CMake"] = said or place
+
+    def _look_at_includes(self, verdict: Verdict, package: Package) -> None:
+        for header, file in package.includes:
+            folder = header.partition("/")[0]
+            if folder == header or any(Path(place, header).exists() for place in INCLUDE_FOLDERS):
+                continue
+            if any(str(path).endswith(f"/{header}") for path in package.files):
+                continue
+            if absence := self._tables.missing_header(header):
+                verdict.left_out.setdefault(file, f"it includes <{header}>: {absence.why}")
+            elif folder not in self._known:
+                self._missing(verdict, folder)
 
 
-def _is_gazebo(asked: Asked) -> bool:
-    """Whether it is find_package(gazebo), which we provide, without headers."""
-    return asked.of_cmake and asked.key == "gazebo"
-
-
-def _has_module(name: str, folder: Path) -> bool:
-    """Whether CMake or the package itself has a Find module for `name`."""
-    module = f"Find{name}.cmake"
-    return any(Path("/usr/share").glob(f"cmake-*/Modules/{module}")) or any(folder.rglob(module))
-
-
-def _pass_on(packages: list[Package], verdicts: list[Verdict]) -> None:
-    """Leaves out packages that depend on one that is left out."""
+def _pass_on(configured: dict[str, Configured], verdicts: list[Verdict]) -> None:
+    """Leaves out packages whose CMakeLists.txt requires one that is left out."""
     by_name = {verdict.name: verdict for verdict in verdicts}
     changed = True
     while changed:
         changed = False
-        for package in packages:
-            for asked in package.asked:
-                other = by_name.get(asked.key)
-                if asked.stops and other and other.stops and by_name[package.name].builds:
-                    by_name[package.name].stops[asked.key] = "it is left out itself"
+        for name, result in configured.items():
+            for other in result.absent:
+                needed = by_name.get(other)
+                if (needed and not needed.builds and not needed.hides_ours
+                        and by_name[name].builds):
+                    by_name[name].stops[other] = "it is left out itself"
                     changed = True
+
+
+def _note_clashes(configured: dict[str, Configured], verdicts: list[Verdict]) -> None:
+    """Of the packages that define a target of one name, the first by name keeps it."""
+    owners: dict[str, str] = {}
+    for verdict in verdicts:
+        result = configured.get(verdict.name)
+        for target in result.targets if result and verdict.builds else ():
+            if owners.setdefault(target, verdict.name) != verdict.name:
+                verdict.clashes[f"target {target}"] = (
+                    f"{owners[target]} has one of that name, too; rename one, or build with "
+                    "catkin_make_isolated or catkin build")
 
 
 def installed_packages(names: Iterable[str]) -> set[str]:

@@ -1,4 +1,4 @@
-"""A workspace's dependencies, from package.xml, CMakeLists.txt, launch files and includes."""
+"""A workspace's packages: what package.xml, launch files and includes ask for."""
 
 from __future__ import annotations
 
@@ -11,15 +11,14 @@ from pathlib import Path
 from catkin_pkg.package import InvalidPackage, parse_package
 from catkin_pkg.packages import find_package_paths
 
-COMMENT = re.compile(r"#[^\n]*")
-FIND_PACKAGE = re.compile(r"\bfind_package\s*\(\s*([\w.+-]+)([^)]*)\)", re.IGNORECASE)
-SET = re.compile(r"\bset\s*\(\s*(\w+)\s+([^)]*)\)", re.IGNORECASE)
-VARIABLE = re.compile(r"\$\{(\w+)\}")
 INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([^>\"\n]+)[>\"]", re.MULTILINE)
 NODE = re.compile(r"<node\b[^>]*\bpkg=[\"']([\w-]+)[\"']")
 FOUND = re.compile(r"\$\(find\s+([\w-]+)\s*\)")
 SOURCES = (".c", ".cc", ".cpp", ".cxx", ".h", ".hh", ".hpp")
 OUR_ADDRESS = "courses@example.org"
+MARKER = "CATKIN_IGNORE"
+MARK = ("made by the build: the driving courses' own package of this name is used; remove this "
+        "file to build this one\n")
 LARGEST = 1 << 20  # bytes of a file that is searched
 
 
@@ -33,8 +32,6 @@ class Asked:
 
     key: str
     where: str
-    stops: bool = False  # without it CMake stops
-    of_cmake: bool = False  # find_package(NAME), not necessarily a ROS package
 
 
 @dataclass
@@ -44,6 +41,7 @@ class Package:
     name: str
     folder: Path
     asked: list[Asked] = field(default_factory=list)
+    files: list[Path] = field(default_factory=list)
     includes: list[tuple[str, str]] = field(default_factory=list)  # header, file
     problem: str = ""  # why its package.xml cannot be read
     unfit: dict[str, str] = field(default_factory=dict)  # what no build tool can handle: why
@@ -67,7 +65,8 @@ def source_folder(path: Path) -> Path:
 
 def read_workspace(source: Path) -> list[Package]:
     """All packages below `source`, by name; WorkspaceError if no build tool can build any."""
-    packages = [_read(source / path) for path in sorted(find_package_paths(str(source)))]
+    packages = [_read(source / path)
+                for path in sorted({*find_package_paths(str(source)), *_hidden(source)})]
     home = next((each.folder.parent for each in packages if each.name == "workspace_needs"), None)
     for package in packages:  # a copy of a lesson in a user's own workspace is not ours
         package.is_ours = package.is_ours and home in package.folder.parents
@@ -83,6 +82,18 @@ def read_workspace(source: Path) -> list[Package]:
     return sorted(packages, key=lambda package: package.name)
 
 
+def hide(folder: Path) -> None:
+    """Keeps rospack and the build tools from finding a package; OSError if it cannot be written."""
+    if not (folder / MARKER).exists():
+        (folder / MARKER).write_text(MARK, "utf-8")
+
+
+def _hidden(source: Path) -> list[str]:
+    """The packages that `hide` was called for, by their paths below `source`."""
+    return [str(path.parent.relative_to(source)) for path in source.rglob(MARKER)
+            if (path.parent / "package.xml").is_file() and _text(path) == MARK]
+
+
 def _read(folder: Path) -> Package:
     try:
         manifest = parse_package(str(folder), warnings=[])
@@ -94,8 +105,8 @@ def _read(folder: Path) -> Package:
         return Package(folder.name, folder, problem=" ".join(str(said).split()))
     package.is_ours = any(person.email == OUR_ADDRESS for person in manifest.maintainers)
     package.asked += [Asked(key, "package.xml") for key in _declared(manifest)]
-    package.asked += _built_with(folder / "CMakeLists.txt")
-    for path in _files(folder):
+    package.files = list(_files(folder))
+    for path in package.files:
         shown = str(path.relative_to(folder))
         if path.suffix in SOURCES:
             package.includes += [(header, shown) for header in INCLUDE.findall(_text(path))]
@@ -123,22 +134,6 @@ def _declared(manifest) -> list[str]:
     return list(dict.fromkeys(
         depend.name for kind in kinds for depend in getattr(manifest, kind)
         if depend.evaluated_condition is not False))
-
-
-def _built_with(path: Path) -> Iterator[Asked]:
-    """Dependencies in find_package(catkin COMPONENTS ...) and find_package(NAME REQUIRED)."""
-    text = COMMENT.sub("", _text(path))
-    variables = dict(SET.findall(text))
-    for name, rest in FIND_PACKAGE.findall(text):
-        words = VARIABLE.sub(lambda found: variables.get(found.group(1), ""), rest).split()
-        stops = "REQUIRED" in words
-        if name == "catkin":
-            _, _, parts = " ".join(words).partition("COMPONENTS")
-            for key in parts.split():
-                if re.fullmatch(r"[A-Za-z][\w-]*", key) and not key.isupper():
-                    yield Asked(key, path.name, stops)
-        elif stops:
-            yield Asked(name, path.name, stops=True, of_cmake=True)
 
 
 def _files(folder: Path) -> Iterator[Path]:

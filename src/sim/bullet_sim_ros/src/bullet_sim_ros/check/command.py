@@ -160,15 +160,14 @@ def _of_package(verdict: Verdict, workspace: Path) -> list[Finding]:
     where = f"package {verdict.name} ({verdict.folder})"
     found = [Finding(where, "build", PROBLEM, f"it is left out: {key}: {why}")
              for key, why in verdict.stops.items()]
+    found += [Finding(where, "catkin_make", PROBLEM, f"it is left out: {key}: {why}")
+              for key, why in verdict.clashes.items()]
     found += [Finding(where, file, ABSENT, f"left out: {why}")
               for file, why in verdict.left_out.items()]
     found += [Finding(where, name, ABSENT, f"{key} needs it: make deps WS={workspace}")
               for name, key in verdict.missing.items()]
     found += [Finding(where, key, ABSENT, f"it will be without: {why}")
               for key, why in verdict.lacks.items()]
-    found += [Finding(where, name, UNCHECKED, "no list here has it; the build stops there if "
-                      "CMake does not find it either")
-              for name in verdict.unsure]
     if not verdict.stops and not verdict.missing:
         found.append(Finding(where, "build", WORKS))
     return found

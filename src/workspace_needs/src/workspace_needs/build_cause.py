@@ -5,14 +5,19 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 import sys
+import textwrap
 from pathlib import Path
 
 MOST = 6
 COMPILER = re.compile(r"^\S+:\d+(:\d+)?: (fatal )?error: ")
 LINKER = re.compile(r"undefined reference to |ld: cannot find ")
 CMAKE = re.compile(r"^CMake Error")
+CMAKE_HEAD = re.compile(r"^CMake Error(?: (?:at|in) (\S+?(?::\d+)?))?(?: \(\w+\))?:\s*")
+CMAKE_CALLER = re.compile(r"^  (\S+:\d+) \(\w+\)$")
+LONGEST = 240  # characters of an error in one line
 NOT_FOUND = re.compile(r'provided by "([^"]+)"|required component \'([^\']+)\'')
 GENERATOR = re.compile(r"^(catkin_make: |ERROR|Error|.*Error\(s\) in |.*RuntimeError: |"
                        r".*InvalidPackage|Multiple packages found|The workspace contains|"
@@ -68,6 +73,29 @@ def cause(text: str) -> list[str]:
         if GENERATOR.search(line):
             return [line for line in rest[:MOST] if line.strip()][:3]
     return []
+
+
+def in_one_line(text: str) -> str:
+    """The first error in the output of CMake, run on one package, with its place in the package."""
+    first = cause(text)
+    if not first:
+        return (text.strip().splitlines() or ["CMake ended without a word"])[-1]
+    place = ""
+    if head := CMAKE_HEAD.match(first[0]):
+        lines = text.splitlines()
+        lines = lines[lines.index(first[0]):]
+        callers = (match.group(1) for match in map(CMAKE_CALLER.match, lines) if match)
+        # Paths of the package are relative; those of catkin and CMake, which it calls, absolute.
+        place = next((path for path in [head.group(1) or "/", *callers] if path[0] != "/"), "")
+        first = [lines[0][head.end():], *itertools.takewhile(_goes_on, lines[1:])]
+        if first[-1].endswith(":"):  # CMake names what it means in the next paragraph
+            first += itertools.takewhile(_goes_on, lines[len(first) + 1:])
+    said = textwrap.shorten(" ".join(first), LONGEST, placeholder=" ...")
+    return f"{place}: {said}" if place else said
+
+
+def _goes_on(line: str) -> bool:
+    return bool(line.strip()) and not line.startswith("Call Stack")
 
 
 def advice(lines: list[str]) -> str | None:

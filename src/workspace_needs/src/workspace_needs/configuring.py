@@ -1,0 +1,206 @@
+"""What CMake itself says of packages: each is configured in a folder that is thrown away.
+
+CMake reads a CMakeLists.txt as the build will, whatever form its find_package has and in whichever
+folder it stands. A package that fails is configured once more with a dependency provider
+(cmake/what_is_asked.cmake) that names all that is absent. Results are kept until CMake files, names
+of files, include lines, Debian's packages or the sourced workspaces change.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterable, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import asdict, dataclass
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+from workspace_needs.build_cause import in_one_line
+from workspace_needs.places import hook, kept_folder, package_folder
+from workspace_needs.workspace import Package, WorkspaceError
+
+LIMIT = 300.0  # s, wall, for one package; some fetch sources while they are configured
+MOST_KEPT = 4000  # results
+LEFT_OUT = re.compile(r": target (\S+) is left out: (.+?)\. What the simulator has in its place")
+NO_MODULES = re.compile(r"required packages were not found:\s*((?:- \S+\s*)+)")
+NO_MODULE = re.compile(r"^-- +(?:No p|P)ackage '([^']+)'.*\n(?:--.*\n)*CMake Error at .*\n"
+                       r" *A required package was not found", re.MULTILINE)
+QUERY = ".cmake/api/v1/query/codemodel-v2"  # CMake's file API answers into ../../reply
+DPKG = Path("/var/lib/dpkg/status")
+
+
+@dataclass(frozen=True)
+class Configured:
+    """What CMake says of one package."""
+
+    error: str = ""  # the first one, in one line; empty: it configures
+    absent: tuple[str, ...] = ()  # names that it requires and that were not found
+    left_out: tuple[tuple[str, str], ...] = ()  # targets without their sources, and why
+    targets: tuple[str, ...] = ()  # its programs and libraries
+
+
+def configure(packages: Iterable[Package], words: Iterable[str] = ()) -> dict[str, Configured]:
+    """What CMake says of each package; `words` are the user's own -D options.
+
+    A package without CMakeLists.txt has no entry, and none has one where CMake is not installed.
+    WorkspaceError if packages depend on one another in a circle.
+    """
+    packages = {package.name: package for package in packages
+                if (package.folder / "CMakeLists.txt").is_file() and not package.unfit}
+    if not packages or shutil.which("cmake") is None:
+        return {}
+    graph = {name: packages.keys() & {asked.key for asked in package.asked} - {name}
+             for name, package in packages.items()}
+    words = [word for word in words if word.startswith("-D")]
+    try:
+        order = list(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        raise WorkspaceError("packages depend on one another in a circle: "
+                             f"{' -> '.join(error.args[1])}; remove one of these dependencies "
+                             "from its package.xml") from error
+    digests = _digests(packages, graph, order, words)
+    store = kept_folder("configured-packages") / "results.json"
+    kept = _read(store)
+    found = {name: _result(kept[digests[name]]) for name in order if digests[name] in kept}
+    needed = _with_dependencies(packages.keys() - found.keys(), graph)
+    if needed:
+        fresh = _Run({name: packages[name] for name in order if name in needed}, graph, words).all()
+        found.update(fresh)
+        _write(store, kept | {digests[name]: asdict(result) for name, result in fresh.items()})
+    return found
+
+
+def _result(kept: Mapping) -> Configured:
+    return Configured(kept["error"], tuple(kept["absent"]),
+                      tuple((target, why) for target, why in kept["left_out"]),
+                      tuple(kept["targets"]))
+
+
+def _with_dependencies(names: Iterable[str], graph: Mapping[str, set[str]]) -> set[str]:
+    """The names and all that they depend on: CMake must find the latter's configuration files."""
+    waiting, found = list(names), set()
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found.add(name)
+            waiting += graph[name]
+    return found
+
+
+class _Run:
+    """One configuration of several packages, those first that others depend on."""
+
+    def __init__(self, packages: Mapping[str, Package], graph: Mapping[str, set[str]],
+                 words: list[str]):
+        self._packages = packages
+        self._graph = {name: graph[name] for name in packages}
+        self._words = words
+
+    def all(self) -> dict[str, Configured]:
+        """By name, in as many processes at once as there are processors."""
+        found: dict[str, Configured] = {}
+        sorter = TopologicalSorter(self._graph)
+        sorter.prepare()
+        running: dict[Future, str] = {}
+        with (tempfile.TemporaryDirectory(prefix="configured-") as place,
+              ThreadPoolExecutor(os.cpu_count() or 1) as pool):
+            while sorter.is_active():
+                running |= {pool.submit(self._one, name, Path(place)): name
+                            for name in sorter.get_ready()}
+                for future in wait(running, return_when=FIRST_COMPLETED).done:
+                    found[running[future]] = future.result()
+                    sorter.done(running.pop(future))
+        return found
+
+    def _one(self, name: str, place: Path) -> Configured:
+        code, said = self._cmake(name, place)
+        left_out = tuple(dict.fromkeys(LEFT_OUT.findall(" ".join(said.split()))))
+        if not code:
+            folder = self._packages[name].folder.resolve()
+            return Configured(left_out=left_out, targets=_targets(place / "build" / name, folder))
+        shutil.rmtree(place / "devel" / name, ignore_errors=True)  # so that no other finds it
+        absent = place / f"{name}.absent"
+        absent.touch()
+        provider = package_folder() / "cmake/what_is_asked.cmake"
+        second = self._cmake(name, place, f"-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES={provider}",
+                             f"-DWORKSPACE_NEEDS_ABSENT={absent}")[1]
+        shutil.rmtree(place / "devel" / name, ignore_errors=True)
+        names = absent.read_text("utf-8").split()
+        for told in (said, second):  # by pkg_check_modules
+            names += NO_MODULE.findall(told)
+            names += " ".join(NO_MODULES.findall(told)).replace("- ", "").split()
+        return Configured(in_one_line(said), tuple(dict.fromkeys(names)), left_out)
+
+    def _cmake(self, name: str, place: Path, *more: str) -> tuple[int, str]:
+        build = place / "build" / name
+        shutil.rmtree(build, ignore_errors=True)
+        (build / QUERY).mkdir(parents=True)
+        below = [str(place / "devel" / other)
+                 for other in _with_dependencies(self._graph[name], self._graph)]
+        prefixes = [*below, *os.environ.get("CMAKE_PREFIX_PATH", "").split(":")]
+        command = ["cmake", str(self._packages[name].folder.resolve()), "-Wno-dev", *hook(),
+                   *self._words, f"-DCATKIN_DEVEL_PREFIX={place / 'devel' / name}",
+                   f"-DCMAKE_PREFIX_PATH={';'.join(filter(None, prefixes))}", *more]
+        try:
+            done = subprocess.run(command, cwd=build, stdin=subprocess.DEVNULL, text=True,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                  errors="replace", timeout=LIMIT, check=False)
+        except subprocess.TimeoutExpired:
+            return 1, f"CMake Error at CMakeLists.txt:1 (project):\n  no end within {LIMIT:.0f} s\n"
+        return done.returncode, done.stdout
+
+
+def _targets(build: Path, folder: Path) -> tuple[str, ...]:
+    """The programs and libraries that a package's own folders define, by CMake's file API."""
+    reply = (build / QUERY).parents[1] / "reply"
+    model = json.loads(next(reply.glob("codemodel-v2-*.json")).read_text("utf-8"))["configurations"]
+    found = []
+    for entry in model[0]["targets"]:
+        target = json.loads((reply / entry["jsonFile"]).read_text("utf-8"))
+        place = folder / model[0]["directories"][entry["directoryIndex"]]["source"]
+        if target["type"] != "UTILITY" and folder in (place, *place.parents):
+            found.append(target["name"])
+    return tuple(found)
+
+
+def _digests(packages: Mapping[str, Package], graph: Mapping[str, set[str]], order: list[str],
+             words: list[str]) -> dict[str, str]:
+    """For each package, a digest of what CMake's answer depends on."""
+    machine = [*words, os.environ.get("CMAKE_PREFIX_PATH", ""), *hook(),
+               str(DPKG.stat().st_mtime_ns if DPKG.exists() else 0)]
+    machine += [Path(word.partition("=")[2]).read_text("utf-8") for word in hook()]
+    found: dict[str, str] = {}
+    for name in order:
+        package = packages[name]
+        digest = hashlib.sha256(repr((machine, str(package.folder.resolve()), package.includes,
+                                      sorted(found[other] for other in graph[name]))).encode())
+        for path in package.files:
+            digest.update(str(path).encode())
+            if path.name == "CMakeLists.txt" or path.suffix in (".cmake", ".in", ".xml"):
+                digest.update(path.read_bytes())
+        found[name] = digest.hexdigest()
+    return found
+
+
+def _read(store: Path) -> dict[str, dict]:
+    try:
+        return json.loads(store.read_text("utf-8"))
+    except (OSError, ValueError):  # none yet, or cut off
+        return {}
+
+
+def _write(store: Path, kept: Mapping[str, dict]) -> None:
+    """Replaces the file as a whole; a folder that cannot be written costs the next run its time."""
+    try:
+        store.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile("w", dir=store.parent, delete=False) as file:
+            json.dump(dict(list(kept.items())[-MOST_KEPT:]), file)
+        os.replace(file.name, store)
+    except OSError:
+        return

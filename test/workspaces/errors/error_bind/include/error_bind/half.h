@@ -1,0 +1,1 @@
+inline double half(double value) { return value / 2; }

@@ -1,0 +1,3 @@
+#include <pluginlib/class_loader.h>
+
+void say() { ROS_INFO("said"); }

@@ -1,0 +1,3 @@
+#include <gazebo/gazebo.hh>
+
+class Plugin : public gazebo::ModelPlugin {};

@@ -1,0 +1,3 @@
+#include "error_header_bind/caller.h"
+
+double called() { return Caller().function()(2); }
