@@ -1,6 +1,7 @@
 """Python runs this file at its start: it amends a few modules when a script imports them.
 
-cv2 gets its windows, and some modules the names that they had when a script was written.
+cv2 gets its windows, some modules get the names that they had when a script was written, and
+rospy's subscribers say so when their simulator has ended.
 Programs of ours print in the language of the locale.
 """
 
@@ -9,7 +10,7 @@ import sys
 import time
 from importlib.machinery import PathFinder
 
-AMENDED = {"cv2", "numpy", "yaml", "joint_state_publisher"}
+AMENDED = {"cv2", "numpy", "yaml", "joint_state_publisher", "rospy.topics"}
 
 
 class Watch:
@@ -33,7 +34,7 @@ class Watch:
     @staticmethod
     def load(load, module):
         load(module)
-        for amend in (put_old_names_back, give_windows):
+        for amend in (put_old_names_back, give_windows, tell_of_the_end):
             try:
                 amend(module)
             except Exception as error:  # a script that needs none of it must not fail here
@@ -44,7 +45,7 @@ class Watch:
 def put_old_names_back(module):
     from headless_highgui.old_names import AMENDED
 
-    AMENDED[module.__name__](module)
+    AMENDED.get(module.__name__, lambda _: None)(module)
 
 
 def give_windows(module):
@@ -52,6 +53,13 @@ def give_windows(module):
         from headless_highgui.hook import install
 
         install(module)
+
+
+def tell_of_the_end(module):
+    if module.__name__ == "rospy.topics":
+        from headless_highgui.course_end import amend_topics
+
+        amend_topics(module)
 
 
 def watch_standard():
