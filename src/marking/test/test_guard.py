@@ -2,11 +2,17 @@
 
 import json
 import os
+import subprocess
+import sys
+import threading
 from collections import Counter
+from types import SimpleNamespace
+from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
 from marking import guard
+from run_session.failure import RunError
 
 MAY_CALL, OWN = "/gazebo/get_model_state", "/gazebo/unpause_physics"
 
@@ -62,3 +68,25 @@ def test_the_environment_empties_an_earlier_try_s_record(sealed, tmp_path):
     environment = guard.environment(tmp_path)
     assert list(tmp_path.iterdir()) == []
     assert environment["PYTHONPATH"].split(os.pathsep)[0].endswith("guarded")
+
+
+@pytest.mark.parametrize("imported", ["rospy", "roslaunch.server"])
+def test_each_program_that_is_a_node_or_roslaunch_loads_the_guard(tmp_path, monkeypatch, imported):
+    monkeypatch.setenv("PYTHONNOUSERSITE", "1")
+    subprocess.run([sys.executable, "-c", f"import {imported}"], check=True,
+                   env={**os.environ, **guard.environment(tmp_path)})
+    lines = (tmp_path / guard.RECORD).read_text(encoding="utf-8").splitlines()
+    assert lines and all(json.loads(line)["guarded"] for line in lines)
+
+
+def test_a_course_with_a_node_that_is_not_guarded_is_not_driven(tmp_path):
+    guard.Guard(tmp_path)
+    with SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False) as node:
+        pids = [os.getpid(), -1]
+        node.register_function(lambda _caller: (1, "", pids.pop(0)), "getPid")
+        threading.Thread(target=node.serve_forever, daemon=True).start()
+        master = SimpleNamespace(lookupNode=lambda _: f"http://127.0.0.1:{node.server_address[1]}")
+        guard.check_guarded(master, ["/gazebo"], tmp_path)
+        with pytest.raises(RunError, match="/motor_control obeys whoever finds its port"):
+            guard.check_guarded(master, ["/motor_control"], tmp_path)
+        node.shutdown()

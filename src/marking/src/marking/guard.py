@@ -104,7 +104,8 @@ def environment(folder: Path) -> dict[str, str]:
     """Environment variables that guard all Python nodes of a course; empties the record."""
     (folder / SEAL).unlink(missing_ok=True)
     (folder / RECORD).unlink(missing_ok=True)
-    return {FOLDER: str(folder), "PYTHONPATH": os.pathsep.join(
+    # Where PYTHONNOUSERSITE has a value, Python loads no usercustomize.py.
+    return {FOLDER: str(folder), "PYTHONNOUSERSITE": "", "PYTHONPATH": os.pathsep.join(
         [str(find_package("marking") / "guarded"), os.environ.get("PYTHONPATH", "")])}
 
 

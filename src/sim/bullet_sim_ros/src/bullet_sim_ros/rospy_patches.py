@@ -1,8 +1,9 @@
-"""The changes to rospy that our programs make, each with its reason; call them before init_node."""
+"""The changes to rospy that our programs make, each with its reason."""
 
 from collections.abc import Callable
 
 import rospy.topics
+from rospy import core, rostime
 from rospy.impl.masterslave import ROSHandler
 from rospy.impl.registration import RegManager
 from rospy.impl.tcpros_service import ServiceImpl
@@ -16,7 +17,8 @@ REFUSED = "refused: this node obeys the course alone"
 def send_promptly() -> None:
     """Make all publishers of this process, which need a queue, send at once (PromptConnection).
 
-    rospy passes each message to a thread, which costs more than all else of publishing.
+    Before the first is made. rospy passes each message to a thread, which costs more than all else
+    of publishing.
     """
     rospy.topics.QueuedConnection = PromptConnection
     rospy.topics.BytesIO = MessageBuffer
@@ -41,8 +43,22 @@ def _add_update(manager: RegManager, topic: str, uris: list[str]) -> None:
         manager.cond.notify_all()
 
 
+def set_time(now: rospy.Time) -> None:
+    """Set the time of rospy.Time.now, which stamps log messages, in the node that makes /clock.
+
+    That node does not subscribe to /clock; so none of its threads may sleep by this time.
+    """
+    rostime._rostime_current = now
+
+
+def report_shutdown() -> None:
+    """Make rospy.is_shutdown true, when rospy itself waits for a master that does not answer."""
+    core._shutdown_flag = True
+
+
 def ask_before_obeying(allows: Callable[[str, str, str], bool]) -> None:
-    """Ask `allows(kind, name, uri)` before this process's node does what others tell it to.
+    """Ask `allows(kind, name, uri)` before this process's node does what others tell it to; to be
+    called before init_node.
 
     rospy obeys whoever finds its port, whatever the master knows. Kinds: "publisher" (to connect
     to topic `name` at the XML-RPC address `uri`), "service" (to answer a request), "parameter" (to

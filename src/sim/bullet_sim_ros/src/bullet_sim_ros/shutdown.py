@@ -6,7 +6,8 @@ import time
 from collections.abc import Callable
 
 import rospy
-from rospy import core
+
+from bullet_sim_ros.rospy_patches import report_shutdown
 
 LOOP_END = 2.0  # s, wall, that a shutdown from outside waits at most for the loop
 SHUTDOWN_LIMIT = 2.0  # s, wall; a master that hangs answers nobody
@@ -53,4 +54,4 @@ def shut_down() -> None:
     own.join(SHUTDOWN_LIMIT)
     while not rospy.is_shutdown() and time.monotonic() < until:
         time.sleep(0.01)
-    core._shutdown_flag = True
+    report_shutdown()

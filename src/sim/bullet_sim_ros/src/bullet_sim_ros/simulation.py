@@ -21,6 +21,7 @@ from bullet_sim_ros.plugin_host.context import PluginContext
 from bullet_sim_ros.plugin_host.registry import load_plugins, load_world_plugins
 from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.real_time_factor import RealTimeFactorMonitor
+from bullet_sim_ros.rospy_patches import set_time
 from bullet_sim_ros.scheduler import Scheduler
 
 IDLE = 0.05  # s, wall clock: how long to wait for a call before checking for shutdown
@@ -117,8 +118,7 @@ class Simulation:
 
     def _publish_clock(self) -> None:
         now = convert.stamp(self.world.time)
-        # This node does not subscribe to /clock: log stamps use this time. No thread sleeps by it.
-        rospy.rostime._rostime_current = now
+        set_time(now)
         self._clock.publish(Clock(now))
 
     # --- pace
