@@ -1,7 +1,7 @@
 """Python runs this file at its start: it amends a few modules when a script imports them.
 
-cv2 gets its windows, some modules get the names that they had when a script was written, and
-rospy's subscribers say so when their simulator has ended.
+cv2 gets its windows, Tk a line for want of a screen, some modules get the names that they had
+when a script was written, and rospy's subscribers say so when their simulator has ended.
 Programs of ours print in the language of the locale.
 """
 
@@ -10,7 +10,7 @@ import sys
 import time
 from importlib.machinery import PathFinder
 
-AMENDED = {"cv2", "numpy", "yaml", "joint_state_publisher", "rospy.topics"}
+AMENDED = {"cv2", "numpy", "yaml", "joint_state_publisher", "rospy.topics", "tkinter"}
 
 
 class Watch:
@@ -49,10 +49,10 @@ def put_old_names_back(module):
 
 
 def give_windows(module):
-    if module.__name__ == "cv2":
-        from headless_highgui.hook import install
+    if module.__name__ in ("cv2", "tkinter"):
+        from headless_highgui.hook import amend_tkinter, install
 
-        install(module)
+        (install if module.__name__ == "cv2" else amend_tkinter)(module)
 
 
 def tell_of_the_end(module):

@@ -233,7 +233,7 @@ def test_python_without_cv2_loads_nothing_more():
 
 def test_a_module_is_watched_for_once():
     code = "import cv2; from usercustomize import Watch; print(sorted(Watch.waited_for))"
-    waited_for = "['joint_state_publisher', 'rospy.topics', 'yaml']"
+    waited_for = "['joint_state_publisher', 'rospy.topics', 'tkinter', 'yaml']"
     assert run_python(code, {"DISPLAY": ""}).stdout.strip() == waited_for
 
 
@@ -255,3 +255,17 @@ def test_a_persons_own_usercustomize_still_runs(tmp_path):
     (tmp_path / "usercustomize.py").write_text("import sys; sys.hello = 'still here'")
     done = run_python("import sys; print(sys.hello)", path=[SOURCE, tmp_path])
     assert done.stdout.strip() == "still here", done.stderr
+
+
+@pytest.mark.parametrize("display", ["", ":7654"])
+def test_a_keyboard_script_without_a_screen_ends_with_what_drives(display):
+    done = run_python("from tkinter import *\nimport tkinter as tk\ntk.Tk()", {"DISPLAY": display})
+    last = done.stderr.splitlines()[-1]
+    assert last.startswith("_tkinter.TclError: ") and "display" in last
+    assert last.endswith("type make drive, or use the page's tab Drive: "
+                         "roslaunch sim_viewer viewer.launch control:=true")
+
+
+def test_windows_with_words_of_their_own_keep_them():
+    done = run_python("import tkinter\ntkinter.Tk(className='turtlesim')", {"DISPLAY": ""})
+    assert done.stderr.splitlines()[-1].endswith('display ""')

@@ -1,9 +1,7 @@
-"""Puts our window functions into cv2 where its own cannot work."""
+"""Puts our window functions into cv2 where its own cannot work; says what is there for Tk's."""
 
 import os
 import re
-
-from headless_highgui.windows import Windows
 
 FUNCTIONS = (
     "namedWindow imshow waitKey waitKeyEx pollKey startWindowThread destroyWindow "
@@ -11,6 +9,8 @@ FUNCTIONS = (
     "getWindowProperty getWindowImageRect setMouseCallback createTrackbar getTrackbarPos "
     "setTrackbarPos setTrackbarMin setTrackbarMax"
 ).split()
+WITHOUT_TK = ("keys drive without a screen, too: type make drive, or use the page's tab Drive: "
+              "roslaunch sim_viewer viewer.launch control:=true")
 
 
 def has_screen(cv2):
@@ -24,7 +24,27 @@ def install(cv2):
     """Replace cv2's window functions, unless it has a screen; say whether we did."""
     if has_screen(cv2):
         return False
+    from headless_highgui.windows import Windows  # and NumPy, which a Tk script may not need
+
     windows = Windows(cv2)
     for name in FUNCTIONS:
         setattr(cv2, name, getattr(windows, name))
     return True
+
+
+def amend_tkinter(tkinter):
+    """Let the error of a window that has no screen end with what drives without one.
+
+    Tutorials' keyboard scripts open `Tk()`; programs of ours give it a name and have own words.
+    """
+    opens = tkinter.Tk.__init__
+
+    def __init__(self, *words, **options):
+        try:
+            opens(self, *words, **options)
+        except tkinter.TclError as error:
+            if words or options or "display" not in str(error):
+                raise
+            raise tkinter.TclError(f"{error}; {WITHOUT_TK}") from None
+
+    tkinter.Tk.__init__ = __init__
