@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """Collects what our programs print, for the catalogues of src/compat/terminal_language.
 
-    terminal_texts.py            adds new texts to the .po files and writes the .mo files;
-                                 texts that are gone stay as comments at the end
+    terminal_texts.py            adds new texts to the .po files, removes those that are gone, writes .mo files
     terminal_texts.py --compile  writes the .mo files only
 
 Needs Debian's gettext. A text with values in it has {0}, {1} ... in the catalogue.
@@ -45,6 +44,7 @@ OF_ARGPARSE = (
     "argument {0}: {1}", "invalid choice: {0} (choose from {1})", "invalid {0} value: {1}",
     "expected one argument", "expected at least one argument", "expected {0} arguments",
     "not allowed with argument {0}")
+OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works")  # its words
 
 
 def texts_of(source: str) -> Iterator[str]:
@@ -130,6 +130,7 @@ NO_TEXT = re.compile(
 def python_texts() -> dict[str, list[str]]:
     """Each text that a program prints, and the files that it is in."""
     found: dict[str, list[str]] = {text: ["Python's argparse"] for text in OF_ARGPARSE}
+    found |= {text: ["bullet_sim_ros/check/findings.py"] for text in OF_CHECK}
     listed = subprocess.run(
         ["git", "-C", str(ROOT), "ls-files", "-co", "--exclude-standard", "src"],
         capture_output=True, text=True, check=True).stdout.split("\n")
@@ -196,6 +197,8 @@ def merge(domain: str, found: dict[str, list[str]]) -> None:
             path.write_text(template({}), encoding="utf-8")
         subprocess.run(["msgmerge", "--quiet", "--no-fuzzy-matching", "--no-wrap", "--update",
                         "--backup=off", str(path), pot.name], check=True)
+    subprocess.run(["msgattrib", "--no-obsolete", "--no-wrap", "-o", str(path), str(path)],
+                   check=True)
 
 
 def compile_catalogue(domain: str, folder: Path) -> None:

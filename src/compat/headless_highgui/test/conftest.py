@@ -1,6 +1,7 @@
-"""Lets pytest import the package from the source folder."""
+"""Lets pytest import the packages from their source folders."""
 
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "src"))
+SOURCE = pathlib.Path(__file__).resolve().parents[1] / "src"
+sys.path[:0] = [str(SOURCE), str(SOURCE.parents[1] / "terminal_language/src")]

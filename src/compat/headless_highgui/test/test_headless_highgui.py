@@ -13,6 +13,7 @@ from headless_highgui import hook, pixels, window_topic
 from headless_highgui.windows import Windows, ros_label
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1] / "src"
+LANGUAGE = SOURCE.parents[1] / "terminal_language/src"
 
 
 def fake_cv2(gui="NONE"):
@@ -26,7 +27,7 @@ def fake_cv2(gui="NONE"):
     return module
 
 
-def run_python(code, env=None, path=(SOURCE,)):
+def run_python(code, env=None, path=(SOURCE, LANGUAGE)):
     """Run code in a fresh Python that has only these folders on PYTHONPATH."""
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path)), **(env or {})}
     return subprocess.run(
@@ -253,7 +254,7 @@ def test_a_broken_hook_does_not_break_cv2(tmp_path):
 
 def test_a_persons_own_usercustomize_still_runs(tmp_path):
     (tmp_path / "usercustomize.py").write_text("import sys; sys.hello = 'still here'")
-    done = run_python("import sys; print(sys.hello)", path=[SOURCE, tmp_path])
+    done = run_python("import sys; print(sys.hello)", path=[SOURCE, LANGUAGE, tmp_path])
     assert done.stdout.strip() == "still here", done.stderr
 
 

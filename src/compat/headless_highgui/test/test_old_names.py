@@ -9,6 +9,7 @@ import pytest
 from headless_highgui import old_names
 
 SOURCE = Path(__file__).resolve().parents[1] / "src"
+LANGUAGE = SOURCE.parents[1] / "terminal_language/src"
 IMAGE = "import cv2, numpy as np; image = np.zeros((9, 9), np.uint8); image[2:5, 2:5] = 255\n"
 CONTOURS = "cv2.findContours(image, cv2.RETR_TREE, cv2.CHAIN_APPROX_SIMPLE)"
 MARKER = (IMAGE + "d = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)\n"
@@ -54,8 +55,8 @@ SCRIPTS = {  # code: what it prints, the new form
 def run(tmp_path, code, name="old.py"):
     script = tmp_path / name
     script.write_text(code)
-    return subprocess.run([sys.executable, script], env={"PYTHONPATH": str(SOURCE)}, text=True,
-                          capture_output=True, timeout=100)
+    return subprocess.run([sys.executable, script], env={"PYTHONPATH": f"{SOURCE}:{LANGUAGE}"},
+                          text=True, capture_output=True, timeout=100)
 
 
 @pytest.mark.parametrize("code", SCRIPTS, ids=lambda code: code.splitlines()[-1][:40])

@@ -17,7 +17,8 @@ CATALOGUE = Catalogue({
     "": "header", "the line is lost": "线丢了", "no such file": "没有这个文件",
     "{0} has no {1}": "{0} 没有{1}", "{0} has no joint called {1}": "{0} 没有名为 {1} 的关节",
     "give one of: {0}": "请从中选一个：{0}", "first {0}, then {1}": "{1} 之前先 {0}",
-    "not translated yet": ""})
+    "not translated yet": "", "; did you mean {0}?": "；是不是 {0}？", "no {0} here": "没有 {0}",
+    "Error: no {0} here": "Error: no {0} here"})
 
 
 @pytest.mark.parametrize(("environment", "language"), [
@@ -36,6 +37,7 @@ def test_the_locale_decides(environment, language):
     (["python3", "-u", f"{home()}/devel/lib/x/y.py"], True),
     (["python3", "/usr/bin/rostopic"], False),
     (["python3", "/home/me/catkin_ws/src/a/scripts/b.py"], False), (["python3", "-c", "x"], False),
+    (["python3", "-P", "-X", "gzserver", "-m", "terminal_language"], True),
     (["python3"], False), (["python3", "-m", "pytest"], False),
     (["python3", "-m", "terminal_language"], True)])
 def test_only_our_programs_are_translated(words, ours):
@@ -51,6 +53,9 @@ def test_only_our_programs_are_translated(words, ours):
      "check: a.world: 没有这个文件; 请从中选一个：b, c"),
     ("give one of: the line is lost", "请从中选一个：线丢了"), ("first a, then b", "b 之前先 a"),
     ("the line is lost\nx\n  no such file\n", "线丢了\nx\n  没有这个文件\n"),
+    ("[gzclient] the line is lost", "[gzclient] 线丢了"),
+    ("no x here; did you mean y?; no such file", "没有 x; 是不是 y？; 没有这个文件"),
+    ("Error: no x here", "Error: no x here"), ('  <link name="no such file"/>\n',) * 2,
     ("not translated yet", "not translated yet"), ("", ""), ("\n", "\n"), ("what?", "what?")])
 def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
     assert CATALOGUE.translate(english) == chinese

@@ -9,6 +9,7 @@ import pytest
 
 HERE = Path(__file__).resolve().parents[1]
 CORE = HERE.parents[1] / "sim/bullet_sim/src"
+NEEDS = HERE.parents[1] / "workspace_needs/src"
 ROBOT = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="colour" default="red"/>
   <xacro:include filename="$(find wheels)/urdf/wheel.xacro"/>
@@ -34,7 +35,7 @@ def folder(tmp_path):
 def run(folder, *words, command=NAMES[0]):
     environment = os.environ | {
         "ROS_PACKAGE_PATH": str(folder),
-        "PYTHONPATH": f"{CORE}{os.pathsep}{os.environ.get('PYTHONPATH', '')}",
+        "PYTHONPATH": f"{CORE}{os.pathsep}{NEEDS}{os.pathsep}{os.environ.get('PYTHONPATH', '')}",
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
     }
     return subprocess.run([*command, *words], cwd=folder, env=environment, text=True,
@@ -101,3 +102,26 @@ def test_an_expression_without_end_is_one_line_that_quotes_it(folder):
 def test_wrong_use_is_exit_code_2(folder, words):
     result = run(folder, *words)
     assert result.returncode == 2 and "error" in result.stderr
+
+
+def test_an_unknown_turtlebot3_is_answered_with_those_there_are(folder):
+    for name in ("burger", "waffle", "waffle_pi", "burger_for_autorace"):
+        (folder / f"turtlebot3_{name}.urdf.xacro").write_text("<robot name='r'/>")
+    result = run(folder, "turtlebot3_wafle.urdf.xacro")
+    assert result.returncode == 2 and result.stderr.count("\n") == 1
+    assert ("is wafle: no such model; there are: burger, waffle, waffle_pi\n" in result.stderr
+            and "did you mean turtlebot3_waffle.urdf.xacro?" in result.stderr)
+
+
+def test_a_package_of_a_workspace_that_is_not_sourced(folder, tmp_path_factory, monkeypatch):
+    home = tmp_path_factory.mktemp("home")
+    built = home / "my_ws"
+    (built / "src/legs").mkdir(parents=True)
+    (built / "src/legs/package.xml").touch()
+    (built / "devel").mkdir()
+    (built / "devel/setup.bash").touch()
+    (folder / "robot.xacro").write_text(ROBOT.replace("find wheels", "find legs"))
+    assert "is its workspace sourced?" in run(folder, "robot.xacro").stderr
+    monkeypatch.setenv("HOME", str(home))
+    assert (f"its workspace is not sourced: source {built}/devel/setup.bash"
+            in run(folder, "robot.xacro").stderr)

@@ -183,6 +183,12 @@ def test_a_missing_file(tmp_path):
         expand(tmp_path / "none.xacro")
 
 
+def test_a_mistyped_file_is_answered_with_the_nearest(tmp_path):
+    (tmp_path / "turtlebot.xacro").touch()
+    with pytest.raises(FormatError, match=r"does not exist; did you mean turtlebot\.xacro\?$"):
+        expand(tmp_path / "turtelbot.xacro")
+
+
 def test_xacros_own_state_comes_back(write):
     before = {name: vars(xacro)[name] for name in ("parse", "warning", "filestack", "all_includes")}
     expand(write(OLD_STYLE))

@@ -196,6 +196,15 @@ def test_a_launch_file_with_its_robot_and_its_nodes(check, tmp_path):
     assert "PROBLEM       launch file:" in check("a.launch", "<launch>")[1]
 
 
+@pytest.mark.parametrize(("package", "name", "near"), [
+    ("gazebo_ros", "spawn_modle", "spawn_model"),
+    ("learning_topic", "06folower_pid.py", "06follower_pid.py"), ("learning_topic", "zzz", "")])
+def test_a_mistyped_node_is_answered_with_the_nearest(check, tmp_path, package, name, near):
+    (tmp_path / "robot.urdf").write_text(ROBOT.format(""))
+    said = check("a.launch", LAUNCH.format("robot_description", package, name))[1]
+    assert f"did you mean {near}?" in said if near else "did you mean" not in said
+
+
 def test_a_package_is_looked_through(capsys):
     assert main(["learning_topic"]) == 0
     said = capsys.readouterr().out
@@ -206,7 +215,10 @@ def test_nothing_to_check_and_a_wrong_launch_file(capsys):
     assert main(["no_such_package"]) == 2
     assert "check: no_such_package: no such file or package" in capsys.readouterr().err
     assert main(["learning_topic", "0curse.launch"]) == 1
-    assert "not there; there are: 0course.launch" in capsys.readouterr().out
+    assert ("not there; did you mean 0course.launch?; there are: 0course.launch"
+            in capsys.readouterr().out)
+    assert main(["learning_topik"]) == 2
+    assert "package; did you mean learning_topic?; try" in capsys.readouterr().err
     assert not Path("no_such_package").exists()
 
 
@@ -276,7 +288,7 @@ def test_an_argument_without_a_name_is_roslaunchs_to_complain_of(check):
 @pytest.mark.parametrize("name", ["/b.launch", "sub/a.launch", "*.launch"])
 def test_a_launch_file_that_a_package_does_not_have(package, capsys, name):
     assert main([package(a__launch="<launch/>"), name]) == 1
-    assert "not there; there are: a.launch" in capsys.readouterr().out
+    assert "there are: a.launch" in capsys.readouterr().out
 
 
 def test_arguments_in_quotation_marks(check, tmp_path):

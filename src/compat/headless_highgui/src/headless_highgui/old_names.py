@@ -12,6 +12,8 @@ import os
 import sys
 import time
 
+from terminal_language import translated
+
 HERE = (__file__, f"{os.path.dirname(os.path.dirname(__file__))}/usercustomize.py")
 LIBRARIES = tuple(f"{prefix}/lib/python3" for prefix in {sys.prefix, sys.base_prefix})
 NUMPY_BUILTINS = {"float": float, "int": int, "bool": bool, "object": object, "str": str,
@@ -42,19 +44,8 @@ def tell(old, new, frame):
     if old in _told:
         return
     _told.add(old)
-    line = "%s:%d: %s is old: write %s"
-    text = line % (frame.f_code.co_filename, frame.f_lineno, old, new)
-    print(in_language_of_locale(text), file=sys.stderr, flush=True)
-
-
-def in_language_of_locale(text):
-    """The script is the learner's, so that nobody else translates what it prints."""
-    try:
-        from terminal_language import catalogue, wanted
-    except ImportError:  # it is off, by a CATKIN_IGNORE
-        return text
-    language = wanted.wanted_language(dict(os.environ))
-    return catalogue.read_catalogue(language).translate(text) if language else text
+    print(translated(f"{frame.f_code.co_filename}:{frame.f_lineno}: {old} is old: write {new}"),
+          file=sys.stderr, flush=True)
 
 
 def put_back(module, find):

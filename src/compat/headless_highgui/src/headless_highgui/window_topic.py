@@ -4,6 +4,8 @@ import logging
 import sys
 import threading
 
+from terminal_language import translated
+
 from headless_highgui.pixels import to_msg
 
 log = logging.getLogger(__name__)
@@ -59,4 +61,5 @@ class WindowTopic:
         self.publisher = rospy.Publisher(
             f"~windows/{self.label}", Image, subscriber_listener=self, queue_size=1
         )
-        rospy.loginfo("no screen: the window is the image topic %s", self.publisher.resolved_name)
+        rospy.loginfo(translated(
+            f"no screen: the window is the image topic {self.publisher.resolved_name}"))

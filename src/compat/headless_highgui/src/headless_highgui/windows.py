@@ -5,6 +5,8 @@ import re
 import threading
 import time
 
+from terminal_language import translated
+
 from headless_highgui.pixels import why_not_shown
 from headless_highgui.window_topic import WindowTopic, running_rospy
 
@@ -131,4 +133,4 @@ class Windows:
         if line not in self._logged:
             self._logged.add(line)
             rospy = running_rospy()
-            (log.warning if rospy is None else rospy.logwarn)(line)
+            (log.warning if rospy is None else rospy.logwarn)(translated(line))

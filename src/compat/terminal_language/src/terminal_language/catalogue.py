@@ -10,11 +10,15 @@ from pathlib import Path
 DOMAIN = "courses"
 LOCALES = Path(__file__).parent / "locale"
 PLACE = re.compile(r"\{(\d+)\}")
-# What may stand around a text: line ends, indents, escape codes, rospy's "[WARN] [12.3, 4.5]: ".
-AROUND = re.compile(r"((?:\s|\x1b\[[\d;]*[A-Za-z])*(?:\[\w+\] \[[\d., ]+\]: )?)(.*?)"
+# What may stand around a text: line ends, indents, escape codes, "[gzclient] ", and rospy's
+# "[WARN] [12.3, 4.5]: ".
+AROUND = re.compile(r"((?:\s|\x1b\[[\d;]*[A-Za-z])*(?:\[\w+\] (?:\[[\d., ]+\]: )?)?)(.*?)"
                     r"((?:\s|\x1b\[[\d;]*[A-Za-z])*)", re.DOTALL)
 JOINTS = re.compile(r"(: |; )")
 MOST_PARTS = 8  # of a text between colons and semicolons; more are data, not a message
+WORD = re.compile(r"[A-Za-z]{2,}")
+FEWEST_WORDS = 3  # of what stays English; what has fewer is a frame for other texts
+LONGEST = 1000  # characters of a line
 DEPTH = 4  # of texts within texts
 
 
@@ -50,16 +54,21 @@ class Catalogue:
 
     def __init__(self, messages: dict[str, str]) -> None:
         self._exact = {english: text for english, text in messages.items() if english and text}
+        for english, text in tuple(self._exact.items()):  # also what stands behind a joint
+            if english.startswith("; "):
+                self._exact.setdefault(english[2:], text.lstrip("；; "))
         sentences = (Sentence(*both) for both in self._exact.items() if PLACE.search(both[0]))
         self._sentences = sorted(sentences, key=lambda sentence: -sentence.weight)
 
     def translate(self, text: str) -> str:
-        """The text in the catalogue's language, as a whole or line by line."""
-        whole = self._around(text)
-        if whole is not None:
-            return whole
-        return "".join(line if (found := self._around(line)) is None else found
-                       for line in text.splitlines(keepends=True))
+        """The text in the catalogue's language, line by line; XML and long lines as they are."""
+        return "".join(map(self._line, text.splitlines(keepends=True)))
+
+    def _line(self, line: str) -> str:
+        if len(line) > LONGEST or line.lstrip().startswith("<"):
+            return line
+        found = self._around(line)
+        return line if found is None else found
 
     def _around(self, text: str, depth: int = DEPTH) -> str | None:
         before, inner, after = AROUND.fullmatch(text).groups()
@@ -96,10 +105,12 @@ class Catalogue:
 
 
 def read_catalogue(language: str) -> Catalogue:
-    """The catalogue of a language of LOCALES, such as zh_CN.
+    """The catalogue of a language of LOCALES, such as zh_CN, and sentences that stay English.
 
     Raises: OSError: there is none.
     """
     translations = gettext.translation(DOMAIN, LOCALES, [language])
-    return Catalogue({key: text for key, text in translations._catalog.items()
-                      if isinstance(key, str)})
+    kept = (LOCALES / "kept.txt").read_text(encoding="utf-8").splitlines()
+    return Catalogue(
+        {line: line for line in kept if len(WORD.findall(PLACE.sub("", line))) >= FEWEST_WORDS}
+        | {key: text for key, text in translations._catalog.items() if isinstance(key, str)})

@@ -36,9 +36,11 @@ def is_ours(argv: list[str]) -> bool:
     for word in words:
         if word == "-c":
             return False
-        if word == "-m":
+        if word in ("-X", "-W"):
+            next(words, "")
+        elif word == "-m":
             return _is_our_module(next(words, "").split(".")[0])
-        if not word.startswith("-"):
+        elif not word.startswith("-"):
             return os.path.realpath(word).startswith(home() + os.sep)
     return False
 

@@ -1,9 +1,11 @@
 """The core's exceptions: one line each, saying what is wrong, where, and what is available."""
 
 import difflib
+import os
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 LINE_BREAK = re.compile(r"\s*[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]\s*")  # those of str.splitlines
 LONGEST_LINE = 900  # characters: a name in a file, or a list of names, may have any length
@@ -42,6 +44,16 @@ def did_you_mean(word: str, known: Iterable[str], alike: float, form: str = "{}"
     return f"; did you mean {form.format(close[0])}?" if close else ""
 
 
+def nearest_file(path: Path | str) -> str:
+    """The end of a line on a missing file: the one in its folder whose name is most like it."""
+    path = Path(path)
+    try:
+        beside = os.listdir(path.parent)
+    except OSError:
+        return ""
+    return did_you_mean(path.name, beside, 0.75)
+
+
 class ResourceNotFound(SimulationError):
     """A URI or file name is in none of the searched folders."""
 
@@ -49,8 +61,10 @@ class ResourceNotFound(SimulationError):
         self.uri = uri
         self.searched = tuple(str(place) for place in searched)
         places = ", ".join(self.searched) or "nowhere to look"
-        there_are = f"; there are: {', '.join(known)}" if known else ""
-        super().__init__(f"{uri} not found (searched: {places}){there_are}")
+        by_name = {Path(name).name: name for name in known}
+        there_are = f"; there are: {', '.join(by_name.values())}" if by_name else ""
+        super().__init__(f"{uri} not found (searched: {places})"
+                         f"{did_you_mean(Path(uri).name, by_name, 0.75)}{there_are}")
 
 
 class UnknownName(SimulationError):

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
 import rospkg
+from workspace_needs.hidden import unsourced
 
 from bullet_sim.errors import FormatError, ResourceNotFound
 from bullet_sim.formats import Resources
@@ -66,7 +67,7 @@ def open_resources(environ: Mapping[str, str] = os.environ) -> Resources:
 
     def find_package(name: str) -> str:
         if name not in packages:
-            raise ResourceNotFound(f"package://{name}", ros_paths)
+            raise ResourceNotFound(f"package://{name}", [", ".join(ros_paths) + unsourced(name)])
         return str(packages[name].folder)
 
     return Resources.from_environment(

@@ -69,7 +69,8 @@ def load_world(path: Path | str, resources: Resources) -> WorldDescription:
     """
     path = Path(path)
     if not path.is_file():
-        raise ResourceNotFound(f"world file {path}", [str(path.parent)])
+        raise ResourceNotFound(f"world file {path}", [str(path.parent)],
+                               [other.name for other in path.parent.glob("*.world")])
     root = read_xml_file(path)
     world = root.find("world") if root.tag in SDF_ROOTS else None
     if world is None:

@@ -6,9 +6,11 @@ import sys
 from pathlib import Path
 
 import rospkg
+from workspace_needs.hidden import unsourced
 from workspace_needs.verdicts import Verdict, judge
 from workspace_needs.workspace import WorkspaceError, source_folder
 
+from bullet_sim.errors import did_you_mean
 from bullet_sim_ros.check.findings import (
     ABSENT,
     ACCEPTED,
@@ -60,8 +62,11 @@ def main(argv: list[str] | None = None) -> int:
         print(f"check: {error}", file=sys.stderr)
         return 2
     if not findings:
-        what = ("no such file or package; try `rospack list`, or give a path" if findings is None
-                else "there is nothing to check: no robot, world or launch file, and no workspace "
+        near = (unsourced(args.what)
+                or did_you_mean(args.what, rospkg.RosPack().list(), 0.75))
+        what = (f"no such file or package{near}; try `rospack list`, or give a path"
+                if findings is None else
+                "there is nothing to check: no robot, world or launch file, and no workspace "
                 "with packages of your own")
         print(f"check: {args.what}: {what}", file=sys.stderr)
         return 2 if findings is None else 0
@@ -120,8 +125,10 @@ class Check:
         there = sorted(folder.rglob(f"*{kind}"))
         found = [path for path in there if str(path).endswith(f"/{name}")]
         if not found:
-            names = ", ".join(sorted(path.name for path in folder.rglob("*.launch"))) or "none"
-            return [problem(str(folder), f"launch file {name}", f"not there; there are: {names}")]
+            names = sorted(path.name for path in folder.rglob("*.launch"))
+            return [problem(str(folder), f"launch file {name}",
+                            f"not there{did_you_mean(name, names, 0.75)}; there are: "
+                            f"{', '.join(names) or 'none'}")]
         return self._file(found[0])
 
     def _package(self, folder: Path) -> list[Finding]:

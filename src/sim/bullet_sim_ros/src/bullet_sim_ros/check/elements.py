@@ -43,7 +43,7 @@ class Lookup:
                           f"there is no type {kind!r}; there are {', '.join(LIGHTS)}")
         entry = self._entry(language, here)
         if entry is not None and entry.status != WORKS:
-            yield Finding(self._where, f"<{'/'.join(here[-2:])}>", entry.status, entry.how)
+            yield Finding(self._where, f"<{'/'.join(here[-2:])}>", entry.status, entry.told())
         for child in element:
             if isinstance(child.tag, str):
                 yield from self._walk(child, here, language, joints)
@@ -70,11 +70,11 @@ class Lookup:
             kind = parent if parent in MATTERS else "model"
             yield Finding(self._where, name, ABSENT, f"not known here: {MATTERS[kind]}")
             return
-        yield Finding(self._where, name, row.status, row.how)
+        yield Finding(self._where, name, row.status, row.told())
         for child in element:
             tag = row.tags.get(child.tag) if isinstance(child.tag, str) else None
             if tag is not None and tag.status != WORKS:
-                yield Finding(self._where, f"{name} <{tag.name}>", tag.status, tag.how)
+                yield Finding(self._where, f"{name} <{tag.name}>", tag.status, tag.told())
 
 
 def _label(element: Element, joints: set) -> str:

@@ -2,6 +2,9 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from unicodedata import east_asian_width
+
+from terminal_language import translated
 
 from bullet_sim.errors import shortened
 from bullet_sim_ros.interface import ABSENT, ACCEPTED, APPROXIMATED, WORKS
@@ -34,7 +37,9 @@ def table(findings: Iterable[Finding]) -> str:
             lines.append("\n" + shortened(finding.where))
             last = finding.where
         how = f": {finding.how}" if finding.how else ""
-        lines.append(shortened(f"  {WORDS[finding.status]:13s} {finding.part}{how}"))
+        word = translated(WORDS[finding.status])
+        wide = sum(east_asian_width(letter) == "W" for letter in word)  # two columns each
+        lines.append(shortened(f"  {word:{13 - wide}s} {finding.part}{how}"))
     return "\n".join(lines).lstrip("\n")
 
 

@@ -16,7 +16,7 @@ import rospkg
 import yaml
 from workspace_needs.tables import DEBIAN, Tables
 
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import SimulationError, did_you_mean
 from bullet_sim.formats import Resources
 from bullet_sim.formats.xml_text import decoded, read_bytes
 from bullet_sim_ros.check.findings import ABSENT, PROBLEM, UNCHECKED, WORKS, Finding, problem
@@ -52,6 +52,14 @@ def _why_absent(package: str) -> str:
     if answer.kind == DEBIAN:
         return f"sudo apt-get install {' '.join(answer.packages)}"
     return answer.why or "source devel/setup.bash of its workspace first"
+
+
+def _executables(package: str) -> set[str]:
+    """Names of what `rosrun` starts of a package."""
+    folders = [Path(folder) for folder in roslib.packages.catkin_find(
+        project=package, search_dirs=["libexec", "share"])]
+    return {path.name for folder in folders for path in folder.rglob("*")
+            if path.is_file() and os.access(path, os.X_OK)}
 
 
 def _words(node: LaunchedNode) -> list[str]:
@@ -145,8 +153,9 @@ class LaunchChecker:
         try:
             files = self._find_node(node.package, node.type)
             if not files:
+                near = did_you_mean(node.type, _executables(node.package), 0.75)
                 yield Finding(where, name, ABSENT, f"package {node.package} has no executable "
-                              f"{node.type} here")
+                              f"{node.type} here{near}")
                 return
         except rospkg.ResourceNotFound:
             yield Finding(where, name, ABSENT,
@@ -235,7 +244,7 @@ def controller_findings(parameters: Mapping[str, object], spawned: Collection[st
         part = f"controller {namespace} ({kind})"
         if registry.find(kind) is not None:
             row = known.get(kind)
-            yield Finding(where, part, row.status if row else WORKS, row.how if row else "")
+            yield Finding(where, part, row.status if row else WORKS, row.told() if row else "")
         elif PACKAGE.match(kind) or namespace.rpartition("/")[2] in spawned:
             yield Finding(where, part, ABSENT,
                           f"there is no such type of controller here{registry.hint(kind)}")

@@ -8,7 +8,7 @@ from xml.dom import minidom
 
 import xacro
 
-from bullet_sim.errors import FormatError
+from bullet_sim.errors import FormatError, nearest_file
 from bullet_sim.files import check_file
 from bullet_sim.formats.xacro.bounds import TooLarge
 from bullet_sim.formats.xacro.errors import includes_itself, place
@@ -61,5 +61,6 @@ def _check(filename: str) -> None:
 
 
 def _unreadable(filename: str, error: OSError) -> str:
-    missing = isinstance(error, FileNotFoundError)
-    return f"{filename} {'does not exist' if missing else f'cannot be read: {error.strerror}'}"
+    if isinstance(error, FileNotFoundError):
+        return f"{filename} does not exist{nearest_file(filename)}"
+    return f"{filename} cannot be read: {error.strerror}"
