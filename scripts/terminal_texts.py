@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Collects what our programs print, for the catalogues of src/compat/terminal_language.
 
-    terminal_texts.py            adds new texts to the .po files, removes those that are gone, writes .mo files
+    terminal_texts.py            adds new texts to the .po files, removes those that are gone, and
+                                 writes the .mo files
     terminal_texts.py --compile  writes the .mo files only
 
 Needs Debian's gettext. A text with values in it has {0}, {1} ... in the catalogue.
