@@ -2,8 +2,9 @@
 
 catkin refuses two packages of one name, and rospack takes the first that it finds. So our package's
 folder gets a CATKIN_IGNORE, which catkin, rospack and rospkg all respect, for as long as a package
-of that name is in src/ outside our own folders. Run before each build; prints a line if a package
-of ours is left out or restored, and ends with 1 if two of the learner's packages share a name.
+of that name is in src/ outside our own folders; a clone of Gazebo's own packages gets one itself,
+as it would hide the simulator. Run before each build; prints a line if a package of ours is left
+out or restored, and ends with 1 if two of the learner's packages share a name.
 
     own_packages.py SRC
 """
@@ -15,6 +16,10 @@ from pathlib import Path
 
 from catkin_pkg.package import InvalidPackage, parse_package
 from catkin_pkg.packages import find_package_paths
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "src/workspace_needs/src"))
+from workspace_needs.tables import Tables
+from workspace_needs.workspace import hide
 
 OUR_FOLDERS = ("car_control", "compat", "evaluation", "exercises", "interfaces",
                "learning_topic", "lessons", "marking", "navigation", "racecar_description",
@@ -56,6 +61,10 @@ def arrange(src: Path) -> tuple[list[str], list[str]]:
     paths = [*find_package_paths(str(src)), *before]
     theirs = names_of(src, [path for path in paths if not is_ours(path)])
     ours = names_of(src, [path for path in paths if is_ours(path)])
+    tables = Tables()
+    for name in [name for name in theirs if tables.why_ours_stays(name)]:
+        for path in theirs.pop(name):
+            hide(src / path)
     wrong = [f"two packages in src/ are called {name}: src/{first} and src/{second}; "
              "remove or rename one"
              for name, (first, second, *_) in

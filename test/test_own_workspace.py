@@ -70,6 +70,12 @@ def test_a_package_of_the_same_name_takes_the_place_of_ours_and_gives_it_back(sr
     assert (done.stdout, markers(src)) == ("Ours again: turtlesim\n", [])
 
 
+def test_a_clone_of_gazebos_own_package_is_left_out_and_ours_stays(src):
+    make_package(src / "gazebo_ros_pkgs/gazebo_ros")
+    done = arrange(src)
+    assert (done.returncode, markers(src)) == (0, ["gazebo_ros_pkgs/gazebo_ros"])
+
+
 def test_a_marker_that_a_person_made_stays(src):
     (src / "compat/CATKIN_IGNORE").touch()
     make_package(src / "somebody/turtlesim")

@@ -48,12 +48,12 @@ class Configured:
 def configure(packages: Iterable[Package], words: Iterable[str] = ()) -> dict[str, Configured]:
     """What CMake says of each package; `words` are the user's own -D options.
 
-    A package without CMakeLists.txt has no entry, and none has one where CMake is not installed.
+    A package without CMakeLists.txt has no entry, and none has one where nothing can be built.
     WorkspaceError if packages depend on one another in a circle.
     """
     packages = {package.name: package for package in packages
                 if (package.folder / "CMakeLists.txt").is_file() and not package.unfit}
-    if not packages or shutil.which("cmake") is None:
+    if not packages or not all(map(shutil.which, ("cmake", "c++", "make"))):
         return {}
     graph = {name: packages.keys() & {asked.key for asked in package.asked} - {name}
              for name, package in packages.items()}

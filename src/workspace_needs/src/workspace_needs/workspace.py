@@ -55,7 +55,7 @@ def source_folder(path: Path) -> Path:
         raise WorkspaceError(f"{path}: there is no such folder; give the workspace's, such as "
                              "~/catkin_ws")
     for folder in (path / "src", path):
-        if folder.is_dir() and next(iter(find_package_paths(str(folder))), None) is not None:
+        if folder.is_dir() and (find_package_paths(str(folder)) or _hidden(folder)):
             return folder.resolve()
     if (path / "src").is_dir():
         raise WorkspaceError(f"{path}/src: there is no package in it; clone one into it first")
@@ -65,8 +65,9 @@ def source_folder(path: Path) -> Path:
 
 def read_workspace(source: Path) -> list[Package]:
     """All packages below `source`, by name; WorkspaceError if no build tool can build any."""
+    hidden = _hidden(source)
     packages = [_read(source / path)
-                for path in sorted({*find_package_paths(str(source)), *_hidden(source)})]
+                for path in sorted({*find_package_paths(str(source)), *hidden})]
     home = next((each.folder.parent for each in packages if each.name == "workspace_needs"), None)
     for package in packages:  # a copy of a lesson in a user's own workspace is not ours
         package.is_ours = package.is_ours and home in package.folder.parents
@@ -75,6 +76,8 @@ def read_workspace(source: Path) -> list[Package]:
         if package.problem:
             raise WorkspaceError(f"{package.folder}/package.xml: {package.problem}; mend it first, "
                                  "no package is built before")
+        if package.folder in {source / path for path in hidden}:
+            continue  # its namesake is ours
         other = by_name.setdefault(package.name, package.folder)
         if other != package.folder:
             raise WorkspaceError(f"two packages are called {package.name}: {other} and "
