@@ -7,9 +7,11 @@ import pytest
 
 from bullet_sim.errors import FormatError
 from bullet_sim.formats import Resources, load_model, load_world, xml_text
+from bullet_sim.formats.loading import MOST
 from bullet_sim.formats.ogre import parse_script
 from bullet_sim.formats.resources import DATA_FOLDER
 from bullet_sim.formats.xml_text import LARGEST_TEXT
+from bullet_sim.world import World
 
 RESOURCES = Resources([DATA_FOLDER / "models"], [DATA_FOLDER])
 MODEL = '<sdf version="1.6"><model name="m"><link name="l">{}</link></model></sdf>'
@@ -114,3 +116,46 @@ def test_a_folder_or_a_locked_file_is_one_line(tmp_path, monkeypatch):
     monkeypatch.setattr(type(file), "read_bytes", locked)
     with pytest.raises(FormatError, match=r"x\.world cannot be read: Permission denied"):
         load_world(file, RESOURCES)
+
+
+@pytest.mark.parametrize("tag", sorted(MOST))
+def test_more_of_one_kind_than_can_be_simulated_is_one_line(tmp_path, tag):
+    text = f"<sdf><world name='w'>{f'<{tag}/>' * (MOST[tag] + 1)}</world></sdf>"
+    world = tmp_path / "w.world"
+    world.write_text(text)
+    said = f"has {MOST[tag] + 1} elements <{tag}>; at most {MOST[tag]} can be simulated"
+    with pytest.raises(FormatError, match=f"w.world {said}"):
+        load_world(world, RESOURCES)
+    with pytest.raises(FormatError, match=f"the text {said}"):
+        load_model(text, RESOURCES)
+
+
+INCLUDE = "<include><uri>model://unit_box</uri><name>b{}</name><static>1</static></include>"
+
+
+@pytest.mark.parametrize("part, around", [
+    ("<model name='m{}'><link name='l'/></model>", "{}"),
+    ("<model name='m'><link name='l'/></model>", "{}"),
+    ("<link name='l{}'/>", "<model name='m'>{}</model>"),
+    ("<model name='m{}'><link name='l'/></model>", "<model name='m'><link name='l'/>{}</model>"),
+    ("<link name='l{0}'/><joint name='j{0}' type='fixed'><parent>world</parent><child>l{0}</child>"
+     "</joint>", "<model name='m'>{}</model>"),
+    ("<visual name='v{}'><geometry><sphere/></geometry></visual>",
+     "<model name='m'><link name='l'>{}</link></model>"),
+    ("<collision name='v{}'><geometry><sphere/></geometry></collision>",
+     "<model name='m'><link name='l'>{}</link></model>"),
+    (INCLUDE, "{}")])
+def test_a_world_takes_a_time_in_proportion_to_its_size(tmp_path, part, around):
+    file = tmp_path / "w.world"
+
+    def seconds(count: int) -> float:
+        parts = "".join(part.format(n) for n in range(count))
+        file.write_text(f"<sdf version='1.6'><world name='w'>{around.format(parts)}</world></sdf>")
+        began = time.process_time()
+        world = World(load_world(file, RESOURCES))
+        world.step(5)
+        world.close()
+        return time.process_time() - began
+
+    seconds(10)  # what is read only once
+    assert seconds(800) < 8 * max(seconds(200), 0.1)  # 4 times in proportion, 16 by the square

@@ -220,5 +220,5 @@ def test_an_expansion_without_memory_is_said():
     def fail():
         raise MemoryError
 
-    with pytest.raises(TooLarge, match=r"^a: the result needs more memory than there is; make"):
+    with pytest.raises(TooLarge, match=r"^a: expanding it needs more memory than there is; make"):
         run_bounded(fail, "a")

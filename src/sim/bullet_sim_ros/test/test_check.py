@@ -10,7 +10,7 @@ import pytest
 import rospkg
 import rospy
 
-from bullet_sim_ros.check import launch_files
+from bullet_sim_ros.check import command, launch_files
 from bullet_sim_ros.check.command import main
 
 ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
@@ -538,6 +538,19 @@ def test_xacro_that_a_package_runs_by_itself_is_said_to_be_unread(tmp_path, caps
     said = capsys.readouterr().out
     assert f"not checked   node own_spawner/spawn.sh: {script} runs xacro; the robot that" in said
     assert said.endswith("all that was checked will work\n")
+
+
+def test_time_and_memory_of_a_file_are_bounded(check, monkeypatch):
+    pile = "".join(f"<model name='m{n}'><link name='l'><collision name='c'><geometry><box/>"
+                   "</geometry></collision></link></model>" for n in range(700))
+    monkeypatch.setattr(command, "LONGEST", 0.5)
+    code, said = check("pile.world", WORLD.format(pile))
+    assert code == 1
+    assert "pile.world: checking it takes longer than 0.5 s of processor time; simplify" in said
+    monkeypatch.setattr(command, "LONGEST", 60.0)
+    monkeypatch.setattr(command, "MOST_BYTES", 2**23)
+    code, said = check("pile.world", WORLD.format(pile))
+    assert code == 1 and "pile.world: checking it needs more memory than there is" in said
 
 
 def test_a_folder_that_is_no_workspace_and_one_that_is_named_by_its_src(tmp_path, capsys):

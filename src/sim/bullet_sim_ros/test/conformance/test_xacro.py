@@ -401,7 +401,7 @@ def test_a_process_that_fails_does_not_do_so_in_silence(capfd):
             raise error
         return fail
 
-    with pytest.raises(FormatError, match=r"^a: the result needs more memory than there is; make"):
+    with pytest.raises(FormatError, match=r"^a: expanding it needs more memory than there is"):
         run_bounded(work(MemoryError()), "a")
     assert run_bounded(work(KeyError("mistake of ours")), "a") == 1
     assert "mistake of ours" in capfd.readouterr().err

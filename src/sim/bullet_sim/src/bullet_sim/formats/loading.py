@@ -1,6 +1,7 @@
 """Reads a model, light or world from text: URDF or SDF, by the root element."""
 
 import re
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -27,12 +28,19 @@ SDF_ROOTS = ("sdf", "gazebo")
 PACKAGE_URI = re.compile(r"package://([^/\\\s\"'<>]+)")
 
 
+# Of one text. Each link without a joint is a body of the engine, and takes some ms to make; a world
+# of that many is far from real time.
+MOST = {"model": 5000, "link": 5000, "joint": 5000, "sensor": 2000, "plugin": 2000,
+        "light": 2000, "visual": 50_000, "collision": 50_000}
+
+
 def load_model(text: str, resources: Resources, name: str | None = None) -> ModelDescription:
     """The model in a URDF or SDF text; `name` replaces the one in the text.
 
     FormatError for a text that is neither, and for errors in it that cannot be skipped.
     """
     root = _parse_model(text)
+    _check_size(root, "the text")
     named = root
     if root.tag == "robot":
         _refuse_unprocessed(root)
@@ -75,6 +83,7 @@ def load_world(path: Path | str, resources: Resources) -> WorldDescription:
     world = root.find("world") if root.tag in SDF_ROOTS else None
     if world is None:
         raise FormatError(f"{path} has no <world> in an <sdf> root (the root is <{root.tag}>)")
+    _check_size(root, str(path))
     source = Source(resources, _read_root).entering(path.resolve()).of_root(root)
     warn_of_unknown_elements(root, source, str(path))
     with reading(str(path)):
@@ -94,6 +103,14 @@ def _refuse_unprocessed(root: Element) -> None:
     if tags and any("${" in value for each in root.iter() for value in each.attrib.values()):
         raise FormatError(f"robot '{root.get('name', '')}' has xacro's tags in it, such as "
                           f"<{min(tags)}>; run xacro first: rosrun xacro xacro FILE")
+
+
+def _check_size(root: Element, what: str) -> None:
+    counts = Counter(element.tag for element in root.iter())
+    for tag, most in MOST.items():
+        if counts[tag] > most:
+            raise FormatError(f"{what} has {counts[tag]} elements <{tag}>; at most {most} can be "
+                              "simulated; split it, or keep what the robot meets")
 
 
 def _put_in_package_folders(root: Element, resources: Resources) -> None:

@@ -20,6 +20,7 @@ from bullet_sim.physics.springs import Springs
 from bullet_sim.physics.velocity_decay import VelocityDecay
 from bullet_sim.pose import Pose
 
+MANY_BODIES = 60  # from which on links without collisions are filtered out
 NOWHERE = -1  # the number of a body that is not in the engine
 FASTEST_JOINT = 1e3  # rad/s or m/s; the engine's own limit of 100 would slow a small wheel
 
@@ -154,7 +155,11 @@ class Body(BodyLinks, BodyJoints):
         # PyBullet damps by default; SDF's <velocity_decay> is 0 by default.
         self.change(pybullet.changeDynamics, BASE, maxJointVelocity=FASTEST_JOINT)
         mass = self._mass()
+        many = len(self.client.auto_disable.bodies) >= MANY_BODIES
         for link in self.tree.links:
+            if many and not link.collisions:
+                # The engine pairs empty shapes in one place as well: a million of a thousand.
+                self.change(pybullet.setCollisionFilterGroupMask, self.index[link.name], 0, 0)
             values = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
             if link.joint is not None:
                 values["jointDamping"] = link.joint.damping

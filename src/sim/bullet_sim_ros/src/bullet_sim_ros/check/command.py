@@ -1,8 +1,10 @@
 """The command-line interface of check."""
 
 import argparse
+import pickle
 import re
 import sys
+import tempfile
 from pathlib import Path
 
 import rospkg
@@ -11,6 +13,7 @@ from workspace_needs.verdicts import Verdict, judge
 from workspace_needs.workspace import WorkspaceError, source_folder
 
 from bullet_sim.errors import did_you_mean
+from bullet_sim.formats.xacro.bounds import TooLarge, run_bounded
 from bullet_sim_ros.check.findings import (
     ABSENT,
     ACCEPTED,
@@ -35,6 +38,8 @@ EPILOG = """examples:
   rosrun bullet_sim_ros check learning_topic 0course.launch  what this launch file starts
   rosrun bullet_sim_ros check ~/catkin_ws                    which packages of a workspace build
 exit code: 0 if all of it will work, if need be approximated; 1 if something will be missing"""
+LONGEST = 60.0  # s of processor time for a file; large worlds take 10
+MOST_BYTES = 2**31
 INCLUDED = re.compile(r"<(?:xacro:)?include\b[^>]*filename=[\"']([^\"']+)[\"']")
 
 
@@ -110,6 +115,23 @@ class Check:
         return self._one_launch(folder, launch) if launch else self._package(folder)
 
     def _file(self, path: Path, alone: bool = True) -> list[Finding]:
+        """As `_looked_at`, in a process of its own with limits of time and memory."""
+        with tempfile.TemporaryDirectory(prefix="check-") as folder:
+            result = Path(folder) / "findings"
+
+            def look() -> int:
+                tempfile.tempdir = folder  # so that what an ended process leaves goes, too
+                result.write_bytes(pickle.dumps(self._looked_at(path, alone)))
+                return 0
+
+            try:
+                if run_bounded(look, str(path), LONGEST, "checking it", MOST_BYTES) == 0:
+                    return pickle.loads(result.read_bytes())  # our own, from the line above
+            except TooLarge as error:
+                return [problem(str(path), "file", error)]
+        return [problem(str(path), "file", "checking it failed, see above")]
+
+    def _looked_at(self, path: Path, alone: bool) -> list[Finding]:
         """`alone`: the user named this file, and not only its package."""
         if path.suffix == ".launch":
             return self._launches.launch_file(path, self._arguments, alone)

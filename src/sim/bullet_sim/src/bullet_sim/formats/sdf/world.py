@@ -1,6 +1,7 @@
 """Reads SDF worlds: models, lights, physics, scene and the poses of a saved `<state>`."""
 
-from collections.abc import Callable, Iterable
+import itertools
+from collections.abc import Callable, Container, Iterator
 from dataclasses import dataclass, field, replace
 from xml.etree.ElementTree import Element
 
@@ -123,13 +124,23 @@ class Entities:
     models: dict[str, ModelDescription] = field(default_factory=dict)
     lights: dict[str, LightDescription] = field(default_factory=dict)
     roads: dict[str, Visual] = field(default_factory=dict)
+    _numbers: dict[tuple[str, str], Iterator[int]] = field(default_factory=dict)
 
     def add(self, entity: Entity, source: Source) -> None:
         """Add an entity; a name that is taken is changed, with a warning."""
         kind = "model" if isinstance(entity, ModelDescription) else "light"
         there = self.models if kind == "model" else self.lights
-        name = _own_name(entity.name, kind, there, source)
+        name = self.own_name(entity.name, kind, there, source)
         there[name] = replace(entity, name=name)
+
+    def own_name(self, name: str, kind: str, taken: Container[str], source: Source) -> str:
+        """A second `box` becomes `box_0`, the next one `box_1`."""
+        if name not in taken:
+            return name
+        numbers = self._numbers.setdefault((kind, name), itertools.count())
+        free = next(own for number in numbers if (own := f"{name}_{number}") not in taken)
+        source.warn_once(f"a {kind} named {name!r} is there already; this one becomes {free!r}")
+        return free
 
 
 def read_entities(element: Element, source: Source) -> Entities:
@@ -148,7 +159,7 @@ def read_entities(element: Element, source: Source) -> Entities:
         copies += len(read) if child.tag == "population" else 0
         for entity in read:
             if isinstance(entity, Visual):
-                name = _own_name(entity.name, "road", entities.roads, source)
+                name = entities.own_name(entity.name, "road", entities.roads, source)
                 entities.roads[name] = entity
             else:
                 found.append((entity, relative_to(child)))
@@ -168,13 +179,3 @@ def _read(child: Element, source: Source) -> list[Entity | Visual]:
         return read_population(child, source)
     entity = READERS[child.tag](child, source) if child.tag in READERS else None
     return [] if entity is None else [entity]
-
-
-def _own_name(name: str, kind: str, taken: Iterable[str], source: Source) -> str:
-    """A second `box` becomes `box_0`, the next one `box_1`."""
-    taken = set(taken)
-    if name not in taken:
-        return name
-    free = next(own for n in range(len(taken) + 1) if (own := f"{name}_{n}") not in taken)
-    source.warn_once(f"a {kind} named {name!r} is there already; this one becomes {free!r}")
-    return free

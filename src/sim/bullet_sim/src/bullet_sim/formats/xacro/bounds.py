@@ -25,6 +25,7 @@ LONG = 1.0  # s; an expression that takes this long is named as the cause
 MOST_BYTES = 2**29
 NO_MEMORY = 70  # exit code of the process that expands
 NOTE_BYTES = 1024
+OUT_OF_MEMORY = (signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS)  # what libraries in C do then
 
 _note = mmap.mmap(-1, NOTE_BYTES)  # current evaluation and its start; shared with the child
 
@@ -75,7 +76,8 @@ def noted_eval(evaluate: Callable[..., Any]) -> Callable[..., Any]:
     return noted
 
 
-def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECONDS) -> int:
+def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECONDS,
+                doing: str = "expanding it", most_bytes: int = MOST_BYTES) -> int:
     """The exit code that `work` returns, in a separate process that expands `file`.
 
     Expressions are Python: no limit inside the interpreter stops `10 ** 10 ** 10`. TooLarge names
@@ -90,7 +92,7 @@ def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECOND
             gc.disable()  # it would traverse the growing document again and again
             signal.signal(signal.SIGPROF, signal.SIG_DFL)  # ends the process
             signal.setitimer(signal.ITIMER_PROF, seconds)
-            limit_memory()
+            limit_memory(most_bytes)
             code = work()
             sys.stdout.flush()
         except MemoryError:
@@ -105,29 +107,33 @@ def run_bounded(work: Callable[[], int], file: str, seconds: float = MOST_SECOND
     if os.WIFEXITED(status) and os.WEXITSTATUS(status) != NO_MEMORY:
         return os.WEXITSTATUS(status)
     if os.WIFEXITED(status):
-        raise TooLarge(f"{file}: the result needs more memory than there is; make it smaller")
-    where = _what_took(min(LONG, seconds / 2), file)
+        raise TooLarge(f"{file}: {doing} needs more memory than there is; make it "
+                       "smaller")
+    where = _what_took(min(LONG, seconds / 2)) or f"{file}: {doing}"
     if os.WTERMSIG(status) == signal.SIGPROF:
         raise TooLarge(f"{where} takes longer than {seconds:g} s of processor time; simplify it")
+    if os.WTERMSIG(status) in OUT_OF_MEMORY:
+        raise TooLarge(f"{where} needs more memory than there is, or breaks the engine; make it "
+                       "smaller")
     raise TooLarge(f"{where} was ended by signal {os.WTERMSIG(status)}")
 
 
-def limit_memory() -> None:
-    """Limit this process to MOST_BYTES more than it has from its parent.
+def limit_memory(most_bytes: int = MOST_BYTES) -> None:
+    """Limit this process to so much more than it has from its parent.
 
     If it is limited already, like check's reader of launch files, it uses what that leaves:
     only root may raise a limit.
     """
     held = int(Path("/proc/self/statm").read_text().split()[5]) * resource.getpagesize()
-    most, given = held + MOST_BYTES, resource.getrlimit(resource.RLIMIT_DATA)[1]
+    most, given = held + most_bytes, resource.getrlimit(resource.RLIMIT_DATA)[1]
     if given != resource.RLIM_INFINITY:
         most = min(most, given)
     resource.setrlimit(resource.RLIMIT_DATA, (most, most))
 
 
-def _what_took(long: float, file: str) -> str:
-    """The expression that has been running, if for at least `long` s; else the file."""
+def _what_took(long: float) -> str:
+    """The expression that has been running, if for at least `long` s."""
     began, _, noted = _note[:].rstrip(b"\0").decode(errors="replace").partition(" ")
     if _note[0] and time.monotonic() - float(began) >= long:
         return noted
-    return f"{file}: expanding it"
+    return ""
