@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import threading
+import time
 
 import pytest
 from geometry_msgs.msg import Twist, Vector3
 
 from bullet_sim.pose import Pose
 from bullet_sim_ros.check.stand_ins import Graph
+from bullet_sim_ros.control import mobile_base
 
 LIMIT = 60.0  # s, wall, for controllers to start
 COVARIANCE = [0.001, 0.001, 1e6, 1e6, 1e6, 0.03]
@@ -50,8 +52,10 @@ def robot(parts: str, simulation_type: str = "") -> str:
         {kind}</plugin></gazebo></robot>"""
 
 
-def run(bench, graph: Graph, *names: str) -> None:
-    """Load and start controllers, as a spawner does; time passes meanwhile."""
+def run(bench, graph: Graph, *names: str, meanwhile=lambda: None) -> None:
+    """Load and start controllers, as a spawner does; time passes, and `meanwhile` is called
+    between the two.
+    """
     answers = []
 
     def ask(service: str, **fields) -> None:
@@ -61,6 +65,7 @@ def run(bench, graph: Graph, *names: str) -> None:
     def work() -> None:
         for name in names:
             ask("load_controller", name=name)
+        meanwhile()
         ask("switch_controller", start_controllers=names, strictness=2, timeout=LIMIT)
 
     client = threading.Thread(target=work, daemon=True)
@@ -208,15 +213,33 @@ def plain_wheel(name: str, x: float, y: float) -> str:
     return wheel(name, "base_link", (x, y, 0), "Velocity")
 
 
-def start_mecanum(bench, graph, text: str, **more):
+def start_mecanum(bench, graph, text: str, meanwhile=lambda: None, **more):
     configure(graph, "drive", type="mecanum_drive_controller/MecanumDriveController",
               pose_covariance_diagonal=COVARIANCE, twist_covariance_diagonal=COVARIANCE,
               **{f"{corner}_wheel_joint": corner for corner in CORNERS}, **more)
     graph.parameters["/robot_description"] = text
     model = bench.spawn(text, Pose((0, 0, 0.1)))
     bench.run(0.1)
-    run(bench, graph, "drive")
+    run(bench, graph, "drive", meanwhile=meanwhile)
     return model
+
+
+def test_a_driver_may_come_before_the_spawner_is_done(bench, graph, caplog, monkeypatch):
+    # conforms: controllers/mecanum_drive_controller/MecanumDriveController
+    monkeypatch.setattr(mobile_base, "STARTING", 0.2)
+    command, refusal = Twist(Vector3(0.3, 0, 0), Vector3()), "Controller is not running"
+
+    def drive_already():
+        bench.send("/r/drive/cmd_vel", command)
+        said.append(refusal in caplog.text)
+        waiting = bench.world.time + 0.3
+        while bench.world.time <= waiting:
+            time.sleep(0.01)
+        bench.send("/r/drive/cmd_vel", command)
+
+    said = []
+    start_mecanum(bench, graph, mecanum(plain_wheel), drive_already)
+    assert said == [False] and caplog.text.count(refusal) == 1
 
 
 @pytest.mark.parametrize("x, y, turn", [(0.3, 0, 0), (0, 0.3, 0), (0, 0, 0.6), (0.2, -0.2, 0)])
