@@ -53,6 +53,13 @@ def drive(tmp_path, monkeypatch):
         yield session, started
 
 
+def test_a_run_in_a_network_of_its_own_takes_no_name_for_an_address(tmp_path):
+    with Session(tmp_path) as session:
+        alone = session.launched("car", alone=True, environment={"X": "1"})
+    assert alone.master_uri == f"http://127.0.0.1:{alone.port}"
+    assert alone._environment["X"] == "1"
+
+
 def test_a_drive_that_takes_too_long_ends_and_leaves_no_report(drive, tmp_path):
     _, started = drive
     with pytest.raises(RunError, match="a lap: the drive did not end within 0 s"):
