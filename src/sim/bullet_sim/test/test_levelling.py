@@ -230,6 +230,14 @@ def test_a_box_from_front_to_back_comes_up():
     assert raised(tree_of(caster("plate", 0.1, 3e-4, Box((0.1, 0.05, 0.04))))) == {}
 
 
+@pytest.mark.parametrize("x, radius, up", [
+    (0.0, 0.15, True), (0.1, 0.15, True), (0.1, 0.09, False)])
+def test_a_round_chassis_stands_on_its_rim(x, radius, up):
+    """Level with the wheels it would carry the robot, and the wheels would slip in place."""
+    assert raised(tree_of(caster("base_disc", x, 0.0, Cylinder(radius, 0.04)))) == (
+        {"base_disc": pytest.approx(CLEARANCE)} if up else {})
+
+
 @pytest.mark.parametrize("higher, up", [(5e-5, True), (2e-4, False)])
 def test_a_box_whose_back_is_a_little_higher_stands_on_it_too(higher, up):
     plate = caster("plate", 0.0, 3e-4, Box((0.3, 0.05, 0.04)))

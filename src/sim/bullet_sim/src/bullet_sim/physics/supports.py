@@ -19,6 +19,8 @@ from bullet_sim.pose import Pose, Vector3, rotate, rotation_matrix
 
 FLAT = 0.1  # sine: an axle counts as level, or a swivel as upright
 LOWEST = 1e-4  # m: corners this little higher than the lowest one stand on the ground, too
+# (8, 3) points of a unit circle on the ground: the bottom of a cylinder that stands upright
+RIM = np.array([(math.cos(turn), math.sin(turn), 0.0) for turn in np.arange(8) * math.pi / 4])
 TRAIL = 0.1  # minimum trail of casters behind their swivels, in radii; steered wheels have less
 
 
@@ -125,7 +127,9 @@ def _feet(collision: Collision, pose: Pose) -> np.ndarray | None:
         case Cylinder(radius, length):
             x, y, z = turn[2]
             reach = 0.5 * abs(z) * length + math.hypot(x, y) * radius
-            return pose.position - np.array([(0.0, 0.0, reach)])
+            lowest = pose.position - np.array([(0.0, 0.0, reach)])
+            stands = 2 * math.hypot(x, y) * radius < LOWEST
+            return lowest + radius * RIM if stands else lowest
         case Box(size):
             corners = np.array(list(itertools.product((-0.5, 0.5), repeat=3))) * size
         case Mesh():
