@@ -45,6 +45,10 @@ OF_ARGPARSE = (
     "argument {0}: {1}", "invalid choice: {0} (choose from {1})", "invalid {0} value: {1}",
     "expected one argument", "expected at least one argument", "expected {0} arguments",
     "not allowed with argument {0}")
+# Of the system, by the error numbers that a learner meets.
+OF_SYSTEM = (
+    "No such file or directory", "Permission denied", "Is a directory", "Not a directory",
+    "File exists", "No space left on device", "Connection refused")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works")  # its words
 
 
@@ -70,6 +74,8 @@ def is_door(node: ast.AST) -> bool:
     """Whether a statement or call shows its texts to somebody."""
     if isinstance(node, ast.Raise):
         return True
+    if isinstance(node, ast.keyword):
+        return node.arg in ("help", "description", "epilog")
     called = node.func if isinstance(node, ast.Call) else None
     name = getattr(called, "attr", getattr(called, "id", ""))
     return name.startswith("log") or name in ("print", "exit", "error", "info", "warning", "input")
@@ -131,6 +137,7 @@ NO_TEXT = re.compile(
 def python_texts() -> dict[str, list[str]]:
     """Each text that a program prints, and the files that it is in."""
     found: dict[str, list[str]] = {text: ["Python's argparse"] for text in OF_ARGPARSE}
+    found |= {text: ["the system"] for text in OF_SYSTEM}
     found |= {text: ["bullet_sim_ros/check/findings.py"] for text in OF_CHECK}
     listed = subprocess.run(
         ["git", "-C", str(ROOT), "ls-files", "-co", "--exclude-standard", "src"],

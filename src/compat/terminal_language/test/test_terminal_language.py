@@ -55,6 +55,7 @@ def test_only_our_programs_are_translated(words, ours):
     ("the line is lost\nx\n  no such file\n", "线丢了\nx\n  没有这个文件\n"),
     ("[gzclient] the line is lost", "[gzclient] 线丢了"),
     ("no x here; did you mean y?; no such file", "没有 x; 是不是 y？; 没有这个文件"),
+    ("no such file (3)", "没有这个文件 (3)"),
     ("Error: no x here", "Error: no x here"), ('  <link name="no such file"/>\n',) * 2,
     ("not translated yet", "not translated yet"), ("", ""), ("\n", "\n"), ("what?", "what?")])
 def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):

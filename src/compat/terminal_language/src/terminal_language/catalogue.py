@@ -15,6 +15,7 @@ PLACE = re.compile(r"\{(\d+)\}")
 AROUND = re.compile(r"((?:\s|\x1b\[[\d;]*[A-Za-z])*(?:\[\w+\] (?:\[[\d., ]+\]: )?)?)(.*?)"
                     r"((?:\s|\x1b\[[\d;]*[A-Za-z])*)", re.DOTALL)
 JOINTS = re.compile(r"(: |; )")
+IN_BRACKETS = re.compile(r"(.+)( \([^()]*\))", re.DOTALL)  # such as argparse's default
 MOST_PARTS = 8  # of a text between colons and semicolons; more are data, not a message
 WORD = re.compile(r"[A-Za-z]{2,}")
 FEWEST_WORDS = 3  # of what stays English; what has fewer is a frame for other texts
@@ -78,6 +79,9 @@ class Catalogue:
     def _message(self, text: str, depth: int) -> str | None:
         """The translation of the text, or of its parts between colons and semicolons."""
         found = self._sentence(text, depth)
+        if found is None and (ending := IN_BRACKETS.fullmatch(text)):
+            head = self._sentence(ending[1], depth)
+            found = None if head is None else head + ending[2]
         parts = JOINTS.split(text)
         if found is not None or not 1 < len(parts) < 2 * MOST_PARTS:
             return found
