@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import sys
 from collections.abc import Callable
@@ -16,6 +17,7 @@ from workspace_needs.workspace import WorkspaceError, read_workspace
 
 COMMANDS = ("check", "db", "fix-permissions", "init", "install", "keys", "resolve", "update",
             "what-needs", "where-defined")
+WITH_VALUES = ("--rosdistro", "--os", "--filter-for-installers", "--sources-cache-dir", "-c")
 OF_A_WORKSPACE = ("install", "check")
 LIBRARY = Path(sys.prefix) / "rosdep"  # a folder of its own: see dependencies/packages.yaml
 
@@ -54,12 +56,23 @@ def main(argv: list[str] | None = None) -> int:
         return 1
     if command in OF_A_WORKSPACE:
         return _of_a_workspace(rosdep_main, args, command, tables)
-    code = _code(rosdep_main, args)
-    if code and command == "resolve":
-        for key in args[args.index(command) + 1:]:
-            if (answer := tables.answer(key)).kind not in (OURS, DEBIAN) and key[0] != "-":
-                print(f"rosdep: {key}: {answer.why}", file=sys.stderr)
-    return code
+    if command == "resolve":
+        return _resolve(rosdep_main, args, tables)
+    return _code(rosdep_main, args)
+
+
+def _resolve(rosdep_main: Callable, args: list[str], tables: Tables) -> int:
+    """resolve: a line for each key that nobody has, or only another release."""
+    answers = {key: tables.answer(key) for before, key in itertools.pairwise(args)
+               if key[:1] not in ("-", "") and key != "resolve" and before not in WITH_VALUES}
+    lacking = [key for key, answer in answers.items() if answer.kind not in (OURS, DEBIAN)]
+    # rosdep would print its table's row of ten lines
+    known = [key for key in lacking if key in tables.debian]
+    code = 0 if known and len(known) == len(answers) else _code(
+        rosdep_main, [word for word in args if word not in known])
+    for key in lacking:
+        print(f"rosdep: {key}: {answers[key].why}", file=sys.stderr)
+    return code or int(bool(lacking))
 
 
 def _code(rosdep_main: Callable, args: list[str]) -> int:
