@@ -480,7 +480,8 @@ def test_a_workspace_is_not_said_to_work_before_its_contents_were_looked_at(tmp_
     (folder / "package.xml").write_text(
         "<package format='2'><name>arm</name><version>1.0.0</version><license>BSD</license>"
         "<description>d</description><maintainer email='a@example.com'>a</maintainer></package>")
-    (folder / "CMakeLists.txt").write_text("find_package(catkin REQUIRED)")
+    (folder / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.0)\nproject(arm)\nfind_package(catkin REQUIRED)\n")
     (folder / "arm.urdf").write_text("<robot")
     assert main([str(tmp_path)]) == 0
     said = capsys.readouterr().out
