@@ -101,6 +101,28 @@ def test_what_stops_every_build_tool_is_said_at_once(tmp_path, bare):
         judge(source)
 
 
+def test_packages_that_start_one_another_are_built(tmp_path, bare):
+    source = tmp_path / "src"
+    body = add_package(source, "body")
+    add_package(source, "world", "body", "body")
+    (body / "launch").mkdir()
+    (body / "launch/a.launch").write_text(
+        '<launch><include file="$(find world)/launch/b.launch"/></launch>', encoding="utf-8")
+    assert of(source, "body").builds and of(source, "world").builds
+    manifest = body / "package.xml"
+    text = manifest.read_text("utf-8")
+    manifest.write_text(text.replace("</package>", "<exec_depend>arm</exec_depend></package>"),
+                        encoding="utf-8")
+    only = add_package(source, "arm") / "package.xml"
+    only.write_text(only.read_text("utf-8").replace(
+        "</package>", "<exec_depend>body</exec_depend></package>"), encoding="utf-8")
+    assert of(source, "body").builds and of(source, "arm").builds
+    manifest.write_text(text.replace("</package>", "<depend>world</depend></package>"),
+                        encoding="utf-8")
+    with pytest.raises(WorkspaceError, match="circle: body -> world -> body; remove one"):
+        judge(source)
+
+
 def test_what_no_catkin_can_build_is_left_out(tmp_path, bare):
     source = tmp_path / "src"
     (add_package(source, "empty") / "CMakeLists.txt").unlink()

@@ -55,14 +55,14 @@ def configure(packages: Iterable[Package], words: Iterable[str] = ()) -> dict[st
                 if (package.folder / "CMakeLists.txt").is_file() and not package.unfit}
     if not packages or not all(map(shutil.which, ("cmake", "c++", "make"))):
         return {}
-    graph = {name: packages.keys() & {asked.key for asked in package.asked} - {name}
-             for name, package in packages.items()}
+    graph = _order(packages)
     words = [word for word in words if word.startswith("-D")]
     try:
         order = list(TopologicalSorter(graph).static_order())
     except CycleError as error:
+        circle = _circle(error.args[1][0], packages)
         raise WorkspaceError("packages depend on one another in a circle: "
-                             f"{' -> '.join(error.args[1])}; remove one of these dependencies "
+                             f"{' -> '.join(circle)}; remove one of these dependencies "
                              "from its package.xml") from error
     digests = _digests(packages, graph, order, words)
     store = kept_folder("configured-packages") / "results.json"
@@ -74,6 +74,28 @@ def configure(packages: Iterable[Package], words: Iterable[str] = ()) -> dict[st
         found.update(fresh)
         _write(store, kept | {digests[name]: asdict(result) for name, result in fresh.items()})
     return found
+
+
+def _order(packages: Mapping[str, Package]) -> dict[str, set[str]]:
+    """The packages that each is configured after, as catkin orders them: those that it is built
+    with, and all that these run with. What it runs with itself may be built with it."""
+    run = {name: packages.keys() & package.run_with for name, package in packages.items()}
+    return {name: _with_dependencies(packages.keys() & package.built_with, run)
+            for name, package in packages.items()}
+
+
+def _circle(name: str, packages: Mapping[str, Package]) -> list[str]:
+    """The shortest way from a package back to it, by what package.xml files declare."""
+    chains, seen = [[name]], set()
+    for chain in chains:  # grows
+        package = packages[chain[-1]]
+        for other in sorted(packages.keys() & (package.built_with | package.run_with)):
+            if other == name:
+                return [*chain, name]
+            if other not in seen:
+                seen.add(other)
+                chains.append([*chain, other])
+    return [name]
 
 
 def _result(kept: Mapping) -> Configured:

@@ -19,6 +19,7 @@ OUR_ADDRESS = "courses@example.org"
 MARKER = "CATKIN_IGNORE"
 MARK = ("made by the build: the driving courses' own package of this name is used; remove this "
         "file to build this one\n")
+KINDS = ("build", "buildtool", "build_export", "exec", "buildtool_export", "test")
 LARGEST = 1 << 20  # bytes of a file that is searched
 
 
@@ -41,6 +42,8 @@ class Package:
     name: str
     folder: Path
     asked: list[Asked] = field(default_factory=list)
+    built_with: set[str] = field(default_factory=set)  # of package.xml, as run_with
+    run_with: set[str] = field(default_factory=set)
     files: list[Path] = field(default_factory=list)
     includes: list[tuple[str, str]] = field(default_factory=list)  # header, file
     problem: str = ""  # why its package.xml cannot be read
@@ -108,6 +111,8 @@ def _read(folder: Path) -> Package:
         return Package(folder.name, folder, problem=" ".join(str(said).split()))
     package.is_ours = any(person.email == OUR_ADDRESS for person in manifest.maintainers)
     package.asked += [Asked(key, "package.xml") for key in _declared(manifest)]
+    package.built_with.update(_declared(manifest, "build", "buildtool", "test"))
+    package.run_with.update(_declared(manifest, "build_export", "buildtool_export", "exec"))
     package.files = list(_files(folder))
     for path in package.files:
         shown = str(path.relative_to(folder))
@@ -131,11 +136,9 @@ def _unfit(manifest, folder: Path) -> dict[str, str]:
     return {}
 
 
-def _declared(manifest) -> list[str]:
-    kinds = ("build_depends", "buildtool_depends", "build_export_depends", "exec_depends",
-             "buildtool_export_depends", "test_depends")
+def _declared(manifest, *kinds: str) -> list[str]:
     return list(dict.fromkeys(
-        depend.name for kind in kinds for depend in getattr(manifest, kind)
+        depend.name for kind in kinds or KINDS for depend in getattr(manifest, f"{kind}_depends")
         if depend.evaluated_condition is not False))
 
 
