@@ -37,7 +37,7 @@ def test_a_built_workspace_around_here_or_in_the_home_has_it(tmp_path, monkeypat
 @pytest.mark.parametrize(("theirs", "hidden"), [
     (["learning_topic", "a/car_control"], "car_control, learning_topic"), (["my_robot"], None)])
 def test_sourcing_says_which_of_the_courses_packages_are_hidden(tmp_path, shell, theirs, hidden):
-    ours, other = tmp_path / "courses", built(tmp_path / "my_ws", *theirs)
+    ours, other = tmp_path / "courses", built(tmp_path / f"my_ws{tmp_path}/courses_2", *theirs)
     for name in ("learning_topic", "car_control", "xacro"):
         (ours / "devel/share" / name).mkdir(parents=True)
     environment = os.environ | {
@@ -46,7 +46,7 @@ def test_sourcing_says_which_of_the_courses_packages_are_hidden(tmp_path, shell,
         "PYTHONPATH": f"{HOOK.parents[1]}/src:{os.environ.get('PYTHONPATH', '')}"}
     for option, said in ((["-i"], bool(hidden)), ([], False)):
         done = subprocess.run([*shell, *option, "-c", f". {HOOK}; set"], text=True, env=environment,
-                              capture_output=True, check=True)
+                              capture_output=True, check=True, timeout=30)
         assert ("hides the courses' package" in done.stderr) is said, done.stderr
         assert not re.search("^_courses_", done.stdout, re.MULTILINE)
         if said:
