@@ -160,6 +160,14 @@ def test_a_xacro_file_that_is_not_processed(tmp_path, monkeypatch, declared):
                                       'command="$(find xacro)/xacro FILE"/>')
 
 
+def test_the_command_that_runs_xacro_does_not_write_over_its_file(tmp_path):
+    path = tmp_path / "car.urdf"
+    path.write_text(XACRO.format(DECLARED))
+    with pytest.raises(model_source.SourceError) as caught:
+        load("-file", str(path))
+    assert str(caught.value).endswith(f"xacro {path} > {tmp_path}/car_processed.urdf")
+
+
 def test_what_xacro_has_written_may_still_name_it(monkeypatch):
     monkeypatch.setattr(rospy, "get_param", lambda name: f'<robot name="car"{DECLARED}/>')
     assert load("-param", "robot_description").startswith("<robot")

@@ -113,6 +113,11 @@ def test_an_unknown_turtlebot3_is_answered_with_those_there_are(folder):
             and "did you mean turtlebot3_waffle.urdf.xacro?" in result.stderr)
 
 
+def test_somebodys_own_file_named_like_a_turtlebot3_is_no_model_of_it(folder):
+    assert run(folder, "turtlebot3_mine.urdf.xacro").stderr == (
+        "xacro: error: turtlebot3_mine.urdf.xacro does not exist\n")
+
+
 def test_a_package_of_a_workspace_that_is_not_sourced(folder, tmp_path_factory, monkeypatch):
     home = tmp_path_factory.mktemp("home")
     built = home / "my_ws"

@@ -73,6 +73,8 @@ def _is_unprocessed(root: ElementTree.Element) -> bool:
 def _run_xacro(options) -> str:
     if options.file is not None:
         written = options.file.removesuffix(".xacro").removesuffix(".urdf") + ".urdf"
+        if written == options.file:  # the shell would empty it before xacro reads it
+            written = written.removesuffix(".urdf") + "_processed.urdf"
         return f"run xacro first: rosrun xacro xacro {options.file} > {written}"
     if options.param is not None:
         return (f'run xacro first: <param name="{options.param}" '
