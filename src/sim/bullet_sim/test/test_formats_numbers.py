@@ -12,6 +12,7 @@ import pytest
 
 from bullet_sim.errors import FormatError
 from bullet_sim.formats import Resources, load_light, load_model, load_world
+from bullet_sim.formats.xml_values import numbers
 
 INERTIAL = """<inertial><mass value="1"/>
     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"""
@@ -141,3 +142,9 @@ def test_inertia_without_end_is_silent_in_what_stands_still(caplog, tmp_path):
     assert not caplog.records
     load_model(STATIC.format("false", ""), Resources())
     assert len(caplog.records) == 5
+
+
+@pytest.mark.parametrize("word", ["0x1p99999", "0x" + "f" * 300])
+def test_a_hexadecimal_number_too_large_for_any_is_no_number(word):
+    with pytest.raises(FormatError):
+        numbers(word, 1, "a mass")

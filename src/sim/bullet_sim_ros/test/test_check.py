@@ -502,6 +502,22 @@ def test_yaml_of_a_package(package, capsys):
     assert "controller /arm/grip (effort_controllers/JointPositionContrller): there is no" in said
 
 
+@pytest.mark.parametrize("text, said", [
+    ("a: &a {b: *a}", "an alias (*) stands within its own anchor (&)"),
+    ("[" * 5000, "it is nested too deeply")])
+def test_yaml_that_does_not_end(package, capsys, text, said):
+    assert main([package(endless__yaml=text)]) == 1
+    assert f"endless.yaml\n  PROBLEM       YAML: {said}" in capsys.readouterr().out
+
+
+def test_yaml_whose_aliases_grow_is_bounded(package, capsys, monkeypatch):
+    monkeypatch.setattr("bullet_sim_ros.check.command.LONGEST", 1.0)
+    lines = ["a0: &a0 {x: 1}", *(f"a{n}: &a{n} {{p: *a{n - 1}, q: *a{n - 1}}}"
+                                 for n in range(1, 40))]
+    assert main([package(laughs__yaml="\n".join(lines))]) == 1
+    assert "checking it takes longer than 1 s of processor time" in capsys.readouterr().out
+
+
 def test_a_hyphen_in_a_name_is_no_fault_where_the_spawner_gives_the_namespace(check):
     robot = JOINTED.format(DRIVE.format(tag="leftJoint")).replace('name="r"', 'name="my-robot"')
     code, said = check("robot.urdf", robot)

@@ -61,3 +61,8 @@ def test_a_transport_without_a_plugin_is_named_with_its_line(tmp_path, monkeypat
     (tmp_path / "see.cpp").write_bytes(b"#include <x>\n" + line)
     found = [(finding.where, finding.part) for finding in program_findings(tmp_path)]
     assert found == ([(str(tmp_path / "see.cpp"), "line 2")] if named else [])
+
+
+def test_a_link_to_nowhere_is_no_source(tmp_path):
+    (tmp_path / ".#see.cpp").symlink_to("me@host.1234")  # Emacs's lock
+    assert list(program_findings(tmp_path)) == []

@@ -42,7 +42,7 @@ def numbers(text: str, count: int, where: str) -> tuple[float, ...]:
     try:
         values = tuple(float.fromhex(word) if HEXADECIMAL.match(word) else float(word)
                        for word in words)
-    except ValueError:
+    except (ValueError, OverflowError):  # float.fromhex has no infinity for 0x1p9999
         values = ()
     if len(values) != count or any(math.isnan(value) for value in values):
         wanted = "a number" if count == 1 else f"{count} numbers"

@@ -133,6 +133,8 @@ class Check:
 
     def _looked_at(self, path: Path, alone: bool) -> list[Finding]:
         """`alone`: the user named this file, and not only its package."""
+        if path.suffix == ".yaml":
+            return self._launches.yaml_file(path)
         if path.suffix == ".launch":
             return self._launches.launch_file(path, self._arguments, alone)
         if path.suffix == ".world":
@@ -160,7 +162,7 @@ class Check:
                 if path.suffix != ".xacro" or _is_robot(path, folder):
                     findings += self._file(path, alone=False)
         for path in sorted(folder.rglob("*.yaml")):
-            findings += self._launches.yaml_file(path)
+            findings += self._file(path, alone=False)
         return findings
 
 

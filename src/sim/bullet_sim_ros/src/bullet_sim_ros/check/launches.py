@@ -132,10 +132,15 @@ class LaunchChecker:
             list(yaml.compose_all(text, yaml.SafeLoader))  # tags may be anybody's own
         except (SimulationError, yaml.YAMLError) as error:
             return [problem(where, "YAML", error)]
+        except RecursionError:
+            return [problem(where, "YAML", "it is nested too deeply")]
         with suppress(yaml.YAMLError):
             content = yaml.safe_load(text)
-            if isinstance(content, dict):
-                return list(controller_findings(dict(_flat(content, "/")), (), self._rows, where))
+            try:
+                found = dict(_flat(content, "/")) if isinstance(content, dict) else {}
+            except RecursionError:
+                return [problem(where, "YAML", "an alias (*) stands within its own anchor (&)")]
+            return list(controller_findings(found, (), self._rows, where))
         return []
 
     def _with_environment(self, launch: Launch) -> LaunchChecker:
