@@ -75,6 +75,13 @@ def test_the_time_is_linear(part):
     assert time.process_time() - began < 20  # hours, were it quadratic
 
 
+def test_the_time_is_linear_in_different_attributes():
+    text = "<a>" + "".join(f"\n<a b{n}=1/>" for n in range(100_000)) + "</a>"
+    began = time.process_time()
+    assert as_xml(text)[1].endswith('; line 100001: write b99999="..." with quotes')
+    assert time.process_time() - began < 20  # 80 s, were the lines counted for each anew
+
+
 def test_world_model_its_config_and_robot(tmp_path, caplog):
     model = tmp_path / "crate"
     model.mkdir()

@@ -5,10 +5,9 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Iterable
-from functools import cache
 from typing import Any, TextIO
 
-from terminal_language.catalogue import Catalogue, read_catalogue
+from terminal_language.catalogue import read_catalogue
 
 
 class TranslatedStream:
@@ -32,15 +31,10 @@ class TranslatedStream:
         return getattr(self._stream, name)
 
 
-@cache
-def _catalogue(language: str) -> Catalogue:
-    return read_catalogue(language)
-
-
 def translate_output(language: str) -> None:
     """Translate what this program prints from now on, where its terminal can show it."""
     def translate(text: str) -> str:
-        return _catalogue(language).translate(text)
+        return read_catalogue(language).translate(text)
 
     streams = {name: getattr(sys, name) for name in ("stdout", "stderr") if getattr(sys, name)}
     if not all(map(_can_show, streams.values())):

@@ -61,8 +61,12 @@ class _Mender:
 
     def advice(self) -> str:
         """`line 3: write &amp; for &; line 7: ...`, in the order of the lines."""
-        lines = {what: self._text.count("\n", 0, place) + 1 for what, place in self._first.items()}
-        return "; ".join(f"line {lines[what]}: {what}" for what in sorted(lines, key=lines.get))
+        line, counted, said = 1, 0, []
+        for what, place in self._first.items():  # in the order of their places
+            line += self._text.count("\n", counted, place)
+            counted = place
+            said.append(f"line {line}: {what}")
+        return "; ".join(said)
 
     def _rewritten(self, found: re.Match) -> str:
         part, kind = found[0], found.lastgroup

@@ -17,8 +17,9 @@ def without_dangling(root: Any) -> list[str]:
     Returns what was missing that would be seen, such as `material 'red'`, each once.
     """
     missing: dict[str, None] = {}
+    images = _ids(root, "image")
     for effect in _all(root, "effect"):
-        _mend_effect(effect, _ids(root, "image"), missing)
+        _mend_effect(effect, images, missing)
     effects = {effect.get("id") for effect in _all(root, "effect") if _is_common(effect)}
     for material in list(_all(root, "material")):
         if (wanted := _target(material, "{*}instance_effect", "url")) not in effects:
@@ -91,7 +92,8 @@ def _mend_effect(effect: Any, images: set[str], missing: dict[str, None]) -> Non
 
 def _mend_inputs(mesh: Any, missing: dict[str, None]) -> None:
     """Vertices are needed; a missing source of anything else is replaced, as its indices stay."""
-    sources = _ids(mesh, "source") | _ids(mesh, "vertices")
+    arrays = _ids(mesh, "source")
+    sources = arrays | _ids(mesh, "vertices")
     for given in list(_all(mesh, "input")):
         wanted = given.get("source", "")[1:]
         if wanted in sources or given.get("semantic") in ("VERTEX", "POSITION"):
@@ -101,4 +103,4 @@ def _mend_inputs(mesh: Any, missing: dict[str, None]) -> None:
             given.getparent().remove(given)
         else:
             given.set("semantic", UNUSED)
-            given.set("source", f"#{next(iter(_ids(mesh, 'source')), '')}")
+            given.set("source", f"#{next(iter(arrays), '')}")
