@@ -159,3 +159,12 @@ def test_with_sudo_a_verb_goes_on_as_the_folders_owner_unless_it_stays_root(
     done = subprocess.run(["bash", tmp_path / "scripts/verb.sh"], text=True, capture_output=True,
                           env={**os.environ, "SUDO_USER": "person"}, check=True)
     assert done.stdout == f"{who}\n"
+
+
+def test_without_an_answer_about_masters_nothing_starts(tmp_path: Path) -> None:
+    choose = ('. scripts/common.sh; python3() { return 3; }; '
+              'if choose_master; then echo starts; fi')
+    done = subprocess.run(["bash", "-c", choose, ROOT / "scripts/viewer.sh"], cwd=ROOT,
+                          env=os.environ | {"ROS_MASTER_URI": ""}, text=True, capture_output=True,
+                          check=True)
+    assert done.stdout == ""

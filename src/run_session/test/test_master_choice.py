@@ -2,11 +2,20 @@
 
 import os
 import socket
+import threading
+from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
 from run_session import master_choice
-from run_session.master_choice import CALLERS, USUAL, free_port, listens_here, own_port
+from run_session.master_choice import (
+    CALLERS,
+    USUAL,
+    free_port,
+    is_up,
+    listens_here,
+    own_port,
+)
 
 
 @pytest.fixture
@@ -76,3 +85,13 @@ def test_only_a_master_of_ones_own_is_joined(monkeypatch, listens, up, joined):
     monkeypatch.setattr(master_choice, "free_port", lambda: 40123)
     expected = USUAL if joined else "http://localhost:40123"
     assert master_choice.master_to_join() == expected
+
+
+def test_another_programs_answer_is_no_masters():
+    server = SimpleXMLRPCServer(("127.0.0.1", 0), logRequests=False)
+    server.register_function(lambda _caller, _key: 7, "hasParam")
+    thread = threading.Thread(target=server.handle_request)
+    with server:
+        thread.start()
+        assert not is_up(f"http://127.0.0.1:{server.server_address[1]}/")
+        thread.join()

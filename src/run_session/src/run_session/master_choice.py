@@ -77,8 +77,8 @@ def is_up(master_uri: str) -> bool:
     try:
         master = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport())
         code, _, named = master.hasParam("/course_run", "/run_id")
-    except (OSError, xmlrpc.client.Error, HTTPException, ExpatError):
-        return False
+    except (OSError, xmlrpc.client.Error, HTTPException, ExpatError, TypeError, ValueError):
+        return False  # nothing, or another program
     return code == 1 and named
 
 

@@ -1,9 +1,12 @@
 """Who sends and who hears: which faults are named, when, and which graphs are none."""
 
+from http.client import IncompleteRead
 from types import SimpleNamespace
 
 import pytest
+import rospy
 
+from bullet_sim_ros import topic_faults
 from bullet_sim_ros.topic_faults import (
     AGAIN,
     PATIENCE,
@@ -105,3 +108,19 @@ def test_a_fault_is_said_once_after_a_while_and_again_only_much_later():
     later = lasting + PATIENCE + 2 * AGAIN
     assert not reports.due([fault], later)
     assert reports.due([fault], later + PATIENCE) == [fault]
+
+
+def test_a_master_that_ends_within_an_answer_does_not_end_the_watch(monkeypatch):
+    at_shutdown, looks = [], []
+
+    def look(_master):
+        looks.append(len(looks))
+        if len(looks) > 1:
+            at_shutdown[0]()
+        raise IncompleteRead(b"")
+
+    monkeypatch.setattr(rospy, "on_shutdown", at_shutdown.append)
+    monkeypatch.setattr(topic_faults, "LOOK", 0.0)
+    monkeypatch.setattr(topic_faults, "_graph", look)
+    topic_faults._watch(Senders())
+    assert looks == [0, 1]

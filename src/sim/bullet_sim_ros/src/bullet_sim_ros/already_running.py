@@ -41,10 +41,10 @@ def full_name(default: str) -> str:
 
 def is_online(master_uri: str) -> bool:
     """Whether something listens at this URI; no longer than ANSWER_TIME, unlike rosgraph's."""
-    place = urlsplit(master_uri)
     try:
+        place = urlsplit(master_uri)
         socket.create_connection((place.hostname, place.port), ANSWER_TIME).close()
-    except (OSError, TypeError):
+    except (OSError, TypeError, ValueError):  # the latter two: it is no URI
         return False
     return True
 

@@ -10,7 +10,9 @@ import time
 from collections.abc import Hashable, Iterator
 from dataclasses import dataclass
 from difflib import SequenceMatcher
+from http.client import HTTPException
 from typing import Any, NamedTuple
+from xml.parsers.expat import ExpatError
 
 import rosgraph
 import rospy
@@ -160,7 +162,7 @@ def _watch(senders: Senders) -> None:
     while not ended.wait(LOOK):
         try:
             graph = _graph(master)
-        except (OSError, MasterException):
+        except (OSError, MasterException, HTTPException, ExpatError):
             continue  # the master is busy, or has ended, which others say
         now = time.monotonic()
         faults = [*contested(senders.recent(now), graph.types), *unheard(graph, me),

@@ -20,7 +20,7 @@ from bullet_sim_ros.already_running import (
 )
 from sim_viewer import about
 from sim_viewer.options import Options
-from sim_viewer.server import local_host
+from sim_viewer.server import local_url
 
 RUNS_ALREADY = "A page runs already: %s"
 LACKS = ("A page runs already: %s It was started without %s: end it with Ctrl-C in its terminal, "
@@ -46,7 +46,7 @@ def running_page(name: str, rviz: str) -> tuple[str, ...]:
     sign = sign_of_life(uri, node)
     if sign is Sign.GONE:
         # A page whose master has ended keeps its address, and changes to the next master by itself.
-        address = f"http://{local_host(wished['address'])}:{wished['port']}/"
+        address = local_url(str(wished["address"]), wished["port"])
         told = ask(address)
         if (told.get("node"), told.get("master")) != (node, uri):
             return ()
@@ -63,7 +63,7 @@ def running_page(name: str, rviz: str) -> tuple[str, ...]:
 
 def why_another_port(options: Options, port: int) -> str:
     """A line that says who has the port of the options, so that this page is at `port`."""
-    told = ask(f"http://{local_host(options.address)}:{options.port}/")
+    told = ask(local_url(options.address, options.port))
     if "master" in told:
         return OTHER_MASTER % (options.port, told["master"], port)
     return TAKEN % (options.port, port)
@@ -93,8 +93,12 @@ def _parameter(master_uri: str, name: str, default: Any) -> Any:
 
 def ask(address: str) -> dict[str, Any]:
     """What the server at this address says about itself; {} if it does not answer as a page."""
-    place = urlsplit(address)
-    connection = http.client.HTTPConnection(place.hostname or "", place.port, timeout=ANSWER_TIME)
+    try:
+        place = urlsplit(address)
+        connection = http.client.HTTPConnection(place.hostname or "", place.port,
+                                                timeout=ANSWER_TIME)
+    except (ValueError, http.client.HTTPException):  # no port, which read_options will say
+        return {}
     try:
         connection.request("GET", about.PATH)
         told = json.loads(connection.getresponse().read())
