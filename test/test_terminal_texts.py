@@ -120,3 +120,5 @@ def test_setup_writes_the_line_that_sources_into_bashrc(tmp_path: Path) -> None:
     assert (code, lines) == (0, ["alias l=ls", line]) and out.startswith("Written into ")
     code, out, lines = typed()
     assert (code, lines) == (0, ["alias l=ls", line]) and "has this line already" in out
+    (tmp_path / ".bashrc").write_text("alias l=ls")  # without a line end
+    assert typed()[2] == ["alias l=ls", line]

@@ -62,6 +62,6 @@ source_in_bashrc() {
   local file=${HOME:-}/.bashrc
   if grep -qsxF "$(bashrc_line)" "$file"; then say $"$file has this line already: source $root/devel/setup.bash"; return; fi
   [ ! -e "$file" ] || sed -i --follow-symlinks "/$bashrc_mark\$/d" "$file"
-  bashrc_line | cat - <(echo) >>"$file" || fail $"$file cannot be written: type in each new terminal: source $root/devel/setup.bash"
+  { [ ! -s "$file" ] || [ -z "$(tail -c 1 "$file")" ] || echo; bashrc_line; echo; } >>"$file" || fail $"$file cannot be written: type in each new terminal: source $root/devel/setup.bash"
   say $"Written into $file: source $root/devel/setup.bash. It holds for each new terminal."
 }

@@ -57,12 +57,19 @@ def test_an_error_names_the_file_that_was_asked_for(tmp_path):
 
 def test_a_full_disk_is_named_and_one_with_room_is_none(tmp_path, monkeypatch):
     check_space(tmp_path)
-    full = SimpleNamespace(f_bavail=1, f_frsize=4096, f_files=0, f_favail=0)
+    full = SimpleNamespace(f_blocks=9, f_bavail=1, f_frsize=4096, f_files=0, f_favail=0)
     monkeypatch.setattr(os, "statvfs", lambda _folder: full)
     with pytest.raises(OSError, match=re.escape(str(tmp_path))) as said:
         check_space(tmp_path)
     assert said.value.errno == errno.ENOSPC
-    no_more_files = SimpleNamespace(f_bavail=2**20, f_frsize=4096, f_files=100, f_favail=0)
+    no_more_files = SimpleNamespace(f_blocks=2**20, f_bavail=2**20, f_frsize=4096, f_files=100,
+                                    f_favail=0)
     monkeypatch.setattr(os, "statvfs", lambda _folder: no_more_files)
     with pytest.raises(OSError):
         check_space(tmp_path)
+
+
+def test_a_file_system_that_counts_no_blocks_is_not_full(tmp_path, monkeypatch):
+    uncounted = SimpleNamespace(f_blocks=0, f_bavail=0, f_frsize=512, f_files=0, f_favail=0)
+    monkeypatch.setattr(os, "statvfs", lambda _folder: uncounted)
+    check_space(tmp_path)

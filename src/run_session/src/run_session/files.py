@@ -16,6 +16,8 @@ def check_space(folder: Path) -> None:
     Who could write nothing more cannot say why; and a drive without its logs proves nothing.
     """
     disk = os.statvfs(folder)
+    if not disk.f_blocks:  # a network's or user's file system that does not count them
+        return
     if disk.f_bavail * disk.f_frsize < LEAST_SPACE or (disk.f_files and not disk.f_favail):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder))
 
