@@ -13,9 +13,11 @@ ORDER = 20
 def main():
     rospy.init_node("fibonacci_client_py")
     client = actionlib.SimpleActionClient("fibonacci", FibonacciAction)
-    client.wait_for_server()
+    if not client.wait_for_server():  # Ctrl-C while waiting  等待时按下 Ctrl-C
+        raise rospy.ROSInterruptException
     client.send_goal(FibonacciGoal(order=ORDER))
-    client.wait_for_result()
+    if not client.wait_for_result():
+        raise rospy.ROSInterruptException
     print("Result:", ", ".join(str(number) for number in client.get_result().sequence))
 
 
