@@ -72,6 +72,22 @@ class Republish(unittest.TestCase):
         self.assertTrue(np.isnan(found[0, 0]))
         self.assertLess(np.nanmax(np.abs(found - METRES)), 0.01)
 
+    def test_data_that_are_no_picture_are_one_line(self):
+        rospy.Subscriber("/bad_out", Image, id)
+        publisher = rospy.Publisher("/bad/compressedDepth", CompressedImage, queue_size=1)
+        for data in (b"", bytes(12)):
+            program = subprocess.Popen(["rosrun", "image_transport", "republish",
+                                        "compressedDepth", "in:=/bad", "raw", "out:=/bad_out"],
+                                       stderr=subprocess.PIPE, text=True)
+            self.addCleanup(program.stderr.close)
+            self.addCleanup(program.wait)
+            self.addCleanup(program.terminate)
+            message = CompressedImage(format="32FC1; compressedDepth png", data=data)
+            timer = rospy.Timer(rospy.Duration(0.2), lambda _, one=message: publisher.publish(one))
+            self.assertRegex(program.stderr.readline(), "republish: .*buf")
+            timer.shutdown()
+            program.terminate()
+
     def test_without_a_target_it_publishes_all(self):
         self.start("raw", None, "/all", "/all_out")
         publisher = rospy.Publisher("/all", Image, queue_size=1)

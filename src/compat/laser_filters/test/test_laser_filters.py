@@ -113,6 +113,8 @@ def test_filters_follow_one_another():
      "chain[0] (m): masks: a has to be a list"),
     ([{"name": "k", "type": "LaserScanSpeckleFilter", "params": {"filter_type": 1}}],
      "chain[0] (k): filter_type is 1; here it can only be 0"),
+    ([{"name": "k", "type": "LaserScanSpeckleFilter", "params": {"filter_window": 0}}],
+     "chain[0] (k): filter_window is 0; it has to be 1 or more"),
     ([{"name": "m", "type": "LaserMedianFilter", "params": {"internal_filter": {
         "type": "MultiChannelMedianFilterFloat", "params": {}}}}],
      "chain[0] (m): internal_filter[0]: number_of_observations is None")])

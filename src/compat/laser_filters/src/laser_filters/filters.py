@@ -206,6 +206,11 @@ class LaserScanSpeckleFilter:
     max_range_difference: float = 0.1
     filter_window: int = 2
 
+    def __post_init__(self) -> None:
+        """Raises ValueError if no point can be in the window."""
+        if self.filter_window < 1:
+            raise ValueError(f"filter_window is {self.filter_window}; it has to be 1 or more")
+
     def filtered(self, scan: Scan, _points_in: PointsIn) -> Scan:
         ranges, window = scan.ranges, self.filter_window
         kept = ranges > self.max_range
