@@ -33,6 +33,24 @@ def test_a_built_workspace_around_here_or_in_the_home_has_it(tmp_path, monkeypat
     assert unsourced("legs").endswith(f"source {here}/devel/setup.bash")
 
 
+def test_folders_that_are_gone_or_somebody_elses_have_no_workspace(tmp_path, monkeypatch):
+    home, gone = built(tmp_path / "home/my_ws", "legs").parent, tmp_path / "gone"
+    (home / "a_private").mkdir()
+    gone.mkdir()
+    monkeypatch.setattr(Path, "home", lambda: home)
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    stat = os.stat
+
+    def refusing(path, *given, **options):
+        if "a_private/" in os.fspath(path):
+            raise PermissionError(13, "Permission denied", path)
+        return stat(path, *given, **options)
+
+    monkeypatch.setattr(os, "stat", refusing)
+    assert unsourced("legs").endswith(f"source {home}/my_ws/devel/setup.bash")
+
+
 @pytest.mark.parametrize("shell", [["bash", "--norc"], ["sh"]])
 @pytest.mark.parametrize(("theirs", "hidden"), [
     (["learning_topic", "a/car_control"], "car_control, learning_topic"), (["my_robot"], None)])

@@ -47,3 +47,10 @@ def test_without_a_simulator_it_says_so(monkeypatch):
     monkeypatch.setenv("ROS_MASTER_URI", "http://127.0.0.1:9")
     done = gz("model", "--list")
     assert done.returncode == 1 and "roslaunch gazebo_ros empty_world.launch" in done.stderr
+
+
+def test_a_master_uri_that_is_none_is_one_line(monkeypatch):
+    monkeypatch.setenv("ROS_MASTER_URI", "http://localhost:1x")
+    done = gz("model", "--list")
+    assert (done.returncode, done.stderr) == (
+        1, "gz model: invalid master URI: http://localhost:1x\n")

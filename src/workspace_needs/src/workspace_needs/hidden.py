@@ -5,6 +5,8 @@
 The shell calls this only where a package hides one of the courses' (env-hooks of this package).
 """
 
+import contextlib
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -33,9 +35,12 @@ def unsourced(package: str) -> str:
 
 def _workspaces() -> Iterator[Path]:
     """Built ones, the nearest first."""
-    here = Path.cwd()
-    for folder in (here, *here.parents, *sorted(Path.home().glob("*"))):
-        if (folder / "devel/setup.bash").is_file():
+    around: list[Path] = []
+    with contextlib.suppress(FileNotFoundError):  # the current folder was removed
+        around = [Path.cwd(), *Path.cwd().parents]
+    for folder in (*around, *sorted(Path.home().glob("*"))):
+        # Not Path.is_file, which raises PermissionError below a folder that is somebody else's.
+        if os.path.isfile(folder / "devel/setup.bash"):
             yield folder
 
 

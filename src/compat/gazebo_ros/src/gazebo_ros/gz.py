@@ -186,6 +186,8 @@ def _call(name: str, kind: type, *request):
         answer = rospy.ServiceProxy(service, kind)(*request)
     except (OSError, rosgraph.MasterException):
         raise GzError(NOT_RUNNING) from None
+    except ValueError as error:  # ROS_MASTER_URI is no URI
+        raise GzError(str(error)) from None
     except rospy.ServiceException as error:
         raise GzError(str(error)) from None
     if not getattr(answer, "success", True):
