@@ -1,5 +1,6 @@
 """Names that older libraries had: each works, and one line says what to write."""
 
+import site
 import subprocess
 import sys
 import types
@@ -99,8 +100,9 @@ def test_what_there_never_was_is_an_error_as_before(tmp_path, asked):
     assert f"AttributeError: module {module!r} has no attribute {name!r}" in done.stderr
 
 
-def test_a_library_sees_the_names_that_there_are(tmp_path):
-    library = f"{sys.prefix}/lib/python3/dist-packages/library.py"
+@pytest.mark.parametrize("prefix", [sys.prefix, "/usr", "/usr/local", site.getuserbase()])
+def test_a_library_sees_the_names_that_there_are(tmp_path, prefix):
+    library = f"{prefix}/lib/python3/dist-packages/library.py"
     code = (f"exec(compile('import collections, numpy; "
             f"print(hasattr(numpy, \"float\"), hasattr(collections, \"Iterable\"))', "
             f"{library!r}, 'exec'))")

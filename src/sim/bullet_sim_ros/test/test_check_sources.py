@@ -1,6 +1,7 @@
 """What check says of a package's scripts and C++ nodes that will not run."""
 
 import subprocess
+import time
 
 import pytest
 
@@ -66,3 +67,10 @@ def test_a_transport_without_a_plugin_is_named_with_its_line(tmp_path, monkeypat
 def test_a_link_to_nowhere_is_no_source(tmp_path):
     (tmp_path / ".#see.cpp").symlink_to("me@host.1234")  # Emacs's lock
     assert list(program_findings(tmp_path)) == []
+
+
+def test_the_time_for_a_source_is_linear(tmp_path):
+    (tmp_path / "see.cpp").write_text("TransportHints(" * 20_000)
+    began = time.process_time()
+    assert list(program_findings(tmp_path)) == []
+    assert time.process_time() - began < 5  # a minute without bounds

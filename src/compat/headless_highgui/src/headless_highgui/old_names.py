@@ -9,13 +9,15 @@ import collections.abc
 import dis
 import functools
 import os
+import site
 import sys
 import time
 
 from terminal_language import translated
 
 HERE = (__file__, f"{os.path.dirname(os.path.dirname(__file__))}/usercustomize.py")
-LIBRARIES = tuple(f"{prefix}/lib/python3" for prefix in {sys.prefix, sys.base_prefix})
+LIBRARIES = tuple(f"{prefix}/lib/python3" for prefix in {  # the latter two: pip's, without a venv
+    sys.prefix, sys.base_prefix, f"{sys.base_prefix}/local", site.getuserbase()})
 NUMPY_BUILTINS = {"float": float, "int": int, "bool": bool, "object": object, "str": str,
                   "complex": complex, "long": int, "unicode": str}
 NUMPY_NAMES = {  # old: new, where NumPy 1.24, 2.0 or a later one has dropped it

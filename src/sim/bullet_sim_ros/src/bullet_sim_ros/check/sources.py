@@ -15,7 +15,8 @@ from bullet_sim_ros.check.findings import ABSENT, Finding, problem
 LONGEST = 256  # bytes that Linux reads of a first line
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 PYTHON = "write #!/usr/bin/env python3 there"
-HINTS = re.compile(rb"\bTransportHints\b[^;\n\"]*\(\s*\"(\w+)\"")
+# With bounds, so that the time is linear.
+HINTS = re.compile(rb"\bTransportHints\b[^;\n\"]{0,200}\(\s{0,200}\"(\w+)\"")
 TRANSPORTS = {"compressed": "compressed_image_transport", "theora": "theora_image_transport",
               "compressedDepth": "compressed_depth_image_transport"}
 LARGEST = 1 << 20  # bytes of a source that is searched
