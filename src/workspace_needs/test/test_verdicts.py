@@ -123,6 +123,17 @@ def test_packages_that_start_one_another_are_built(tmp_path, bare):
         judge(source)
 
 
+def test_what_is_configured_later_stops_a_package(tmp_path, bare):
+    source = tmp_path / "src"
+    for name in ("arm", "wheel"):
+        add_package(source, name, "", "tool")
+    add_package(source, "tool")
+    assert of(source, "arm").stops["tool"].endswith("add <depend>tool</depend> there")
+    assert of(source, "wheel").builds  # by luck of its name
+    add_package(source, "arm_2", "tool", "tool")
+    assert of(source, "arm_2").builds
+
+
 def test_what_no_catkin_can_build_is_left_out(tmp_path, bare):
     source = tmp_path / "src"
     (add_package(source, "empty") / "CMakeLists.txt").unlink()

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import subprocess
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import rospkg
+from catkin_pkg.topological_order import topological_order
 
 from workspace_needs.configuring import Configured, configure
 from workspace_needs.tables import DEBIAN, OURS, Answer, Tables
@@ -46,7 +49,7 @@ def judge(source: Path, tables: Tables | None = None, words: Iterable[str] = ())
     hidden = {package.name: why for package in packages
               if (why := tables.why_ours_stays(package.name))}
     configured = configure((each for each in packages if each.name not in hidden), words)
-    judgement = _Judgement(packages, configured, tables)
+    judgement = _Judgement(packages, configured, tables, _order(source))
     verdicts = [Verdict(package.name, package.folder, hides_ours=True,
                         stops={"ours is used": hidden[package.name]})
                 if package.name in hidden else judgement.of(package) for package in packages]
@@ -59,8 +62,8 @@ class _Judgement:
     """What is known of all packages of a workspace together."""
 
     def __init__(self, packages: list[Package], configured: dict[str, Configured],
-                 tables: Tables):
-        self._tables = tables
+                 tables: Tables, order: list[str]):
+        self._tables, self._order = tables, order
         self._configured = configured
         self._names = {package.name for package in packages}
         self._known = self._names | set(rospkg.RosPack().list())
@@ -104,6 +107,10 @@ class _Judgement:
         """Notes why CMake ended with an error: what is absent, else the error itself."""
         explained = False
         for name in result.absent:
+            if self._is_later(name, verdict.name):
+                verdict.stops[name] = ("it is configured later, because package.xml does not name "
+                                       f"it; add <depend>{name}</depend> there")
+                continue
             kind = self._answers[name].kind
             if self._missing(verdict, name) or kind == OURS or name == "gazebo":
                 explained = True  # to be installed or built first
@@ -112,6 +119,11 @@ class _Judgement:
         if not explained and verdict.builds:
             place, _, said = result.error.partition(": ")
             verdict.stops[place if said else "CMake"] = said or place
+
+    def _is_later(self, name: str, other: str) -> bool:
+        """Whether the build tools come to a package of the workspace after the other one."""
+        return {name, other} <= set(self._order) and (
+            self._order.index(name) > self._order.index(other))
 
     def _look_at_includes(self, verdict: Verdict, package: Package) -> None:
         for header, file in package.includes:
@@ -124,6 +136,13 @@ class _Judgement:
                 verdict.left_out.setdefault(file, f"it includes <{header}>: {absence.why}")
             elif folder not in self._known:
                 self._missing(verdict, folder)
+
+
+def _order(source: Path) -> list[str]:
+    """The packages below `source` in the build tools' order, up to a circle if there is one."""
+    with contextlib.redirect_stderr(io.StringIO()):  # the build says it, too
+        return [package.name for path, package in topological_order(str(source))
+                if path is not None]
 
 
 def _pass_on(configured: dict[str, Configured], verdicts: list[Verdict]) -> None:
