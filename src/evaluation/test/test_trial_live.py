@@ -51,7 +51,8 @@ class Ending:
         raise KeyboardInterrupt
 
     def launched(self, *_):
-        return SimpleNamespace(start_roscore=lambda: None, master_uri="", log_folder=self.out)
+        return SimpleNamespace(start_roscore=lambda: None, master_uri="",
+                               why_not_callers="", log_folder=self.out)
 
 
 def test_ctrl_c_after_the_drive_does_not_lose_its_report(tmp_path, monkeypatch):
