@@ -10,7 +10,7 @@ import pytest
 import rospkg
 import rospy
 
-from bullet_sim_ros.check import command, launch_files
+from bullet_sim_ros.check import contents, launch_files, workspaces
 from bullet_sim_ros.check.command import main
 
 ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
@@ -474,18 +474,66 @@ def test_a_workspace_before_it_is_built(tmp_path, capsys):
     assert "works         build" in wheel or "roscpp needs it: make deps WS=" in wheel
 
 
-def test_a_workspace_is_not_said_to_work_before_its_contents_were_looked_at(tmp_path, capsys):
+@pytest.fixture
+def workspace(tmp_path, capsys):
+    """Checks a workspace that is not built, of one package `arm`: exit code and what is printed."""
     folder = tmp_path / "src/arm"
-    folder.mkdir(parents=True)
+    (folder / "scripts").mkdir(parents=True)
     (folder / "package.xml").write_text(
         "<package format='2'><name>arm</name><version>1.0.0</version><license>BSD</license>"
-        "<description>d</description><maintainer email='a@example.com'>a</maintainer></package>")
-    (folder / "CMakeLists.txt").write_text(
-        "cmake_minimum_required(VERSION 3.0)\nproject(arm)\nfind_package(catkin REQUIRED)\n")
-    (folder / "arm.urdf").write_text("<robot")
-    assert main([str(tmp_path)]) == 0
-    said = capsys.readouterr().out
-    assert "not checked   what is in the packages: robots, worlds, launch files and YAML" in said
+        "<description>d</description><maintainer email='a@example.com'>a</maintainer>"
+        "<buildtool_depend>catkin</buildtool_depend></package>")
+    (folder / "main.cpp").write_text("int main() {}\n")
+    (folder / "scripts/talk.py").write_text("#!/usr/bin/env python3\n")
+
+    def run(cmake: str = "", **files: str) -> tuple[int, str]:
+        (folder / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.0)\nproject(arm)\nfind_package(catkin REQUIRED)\n"
+            f"catkin_package()\n{cmake}")
+        for name, text in files.items():
+            (folder / name.replace("__", ".")).write_text(text)
+        code = main([str(tmp_path)])
+        return code, capsys.readouterr().out
+    return run
+
+
+def test_what_is_in_a_workspace_is_looked_at_before_it_is_built(workspace):
+    launch = LAUNCH.replace("$(dirname)", "$(find arm)").format("robot_description", "arm", "n")
+    cmake = ("add_executable(n main.cpp)\ncatkin_install_python(PROGRAMS scripts/talk.py\n"
+             "  DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})\n")
+    code, said = workspace(cmake, robot__urdf=ROBOT.format(""), a__launch=launch, b__yaml="a: 1\n",
+                           c__launch=launch.replace('type="n"', 'type="talk.py"'))
+    assert code == 0 and said.endswith("all of it will work\n")
+    assert "works         launch files, worlds, robots and YAML (4)" in said
+    assert "a.launch" not in said
+    code, said = workspace(cmake, a__launch=launch.replace('type="n"', 'type="nn"'))
+    assert code == 1 and "node arm/nn: package arm has no executable nn here" in said
+    assert "robots and YAML" not in said
+
+
+@pytest.mark.parametrize("name, text, why", [
+    ("arm.urdf", "<robot", "PROBLEM       robot: "),
+    ("arm.world", "<sdf", "PROBLEM       world: "),
+    ("arm.yaml", "a:\n\tb: 1\n", "PROBLEM       YAML: "),
+    ("arm.launch", "<launch><node/></launch>", "PROBLEM       launch file: "),
+])
+def test_a_fault_in_a_workspaces_file_is_found(workspace, name, text, why):
+    code, said = workspace(**{name.replace(".", "__"): text})
+    assert code == 1 and f"/arm/{name}\n  {why}" in said
+    assert "works         build" in said and said.endswith("something will be missing, see above\n")
+
+
+def test_programs_of_a_package_that_does_not_configure_are_not_said_to_be_absent(workspace):
+    launch = LAUNCH.format("robot_description", "arm", "n")
+    code, said = workspace("message(FATAL_ERROR no)", robot__urdf=ROBOT.format(""),
+                           a__launch=launch)
+    assert code == 1 and "not checked   node arm/n: what the build makes of package arm" in said
+
+
+def test_a_workspace_is_looked_at_for_a_bounded_time(workspace, monkeypatch):
+    monkeypatch.setattr(workspaces, "LONGEST", -1.0)
+    code, said = workspace(arm__urdf="<robot", b__yaml="a: 1\n")
+    assert code == 0 and "not checked   2 of its 2 files: the -1 s for the workspace are" in said
     assert said.endswith("all that was checked will work\n")
 
 
@@ -560,12 +608,12 @@ def test_xacro_that_a_package_runs_by_itself_is_said_to_be_unread(tmp_path, caps
 def test_time_and_memory_of_a_file_are_bounded(check, monkeypatch):
     pile = "".join(f"<model name='m{n}'><link name='l'><collision name='c'><geometry><box/>"
                    "</geometry></collision></link></model>" for n in range(700))
-    monkeypatch.setattr(command, "LONGEST", 0.5)
+    monkeypatch.setattr(contents, "LONGEST", 0.5)
     code, said = check("pile.world", WORLD.format(pile))
     assert code == 1
     assert "pile.world: checking it takes longer than 0.5 s of processor time; simplify" in said
-    monkeypatch.setattr(command, "LONGEST", 60.0)
-    monkeypatch.setattr(command, "MOST_BYTES", 2**23)
+    monkeypatch.setattr(contents, "LONGEST", 60.0)
+    monkeypatch.setattr(contents, "MOST_BYTES", 2**23)
     code, said = check("pile.world", WORLD.format(pile))
     assert code == 1 and "pile.world: checking it needs more memory than there is" in said
 

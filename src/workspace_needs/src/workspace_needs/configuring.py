@@ -17,7 +17,7 @@ import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -43,6 +43,7 @@ class Configured:
     absent: tuple[str, ...] = ()  # names that it requires and that were not found
     left_out: tuple[tuple[str, str], ...] = ()  # targets without their sources, and why
     targets: tuple[str, ...] = ()  # its programs and libraries
+    programs: tuple[str, ...] = ()  # file names of what rosrun starts once it is built
 
 
 def configure(packages: Iterable[Package], words: Iterable[str] = ()) -> dict[str, Configured]:
@@ -101,7 +102,7 @@ def _circle(name: str, packages: Mapping[str, Package]) -> list[str]:
 def _result(kept: Mapping) -> Configured:
     return Configured(kept["error"], tuple(kept["absent"]),
                       tuple((target, why) for target, why in kept["left_out"]),
-                      tuple(kept["targets"]))
+                      tuple(kept["targets"]), tuple(kept["programs"]))
 
 
 def _with_dependencies(names: Iterable[str], graph: Mapping[str, set[str]]) -> set[str]:
@@ -145,7 +146,13 @@ class _Run:
         left_out = tuple(dict.fromkeys(LEFT_OUT.findall(" ".join(said.split()))))
         if not code:
             folder = self._packages[name].folder.resolve()
-            return Configured(left_out=left_out, targets=_targets(place / "build" / name, folder))
+            targets = _targets(place / "build" / name, folder)
+            relays = place / "devel" / name / "lib" / name  # of catkin_install_python
+            programs = {path.name for path in relays.glob("*")} | {
+                target["nameOnDisk"] for target in targets if target["type"] == "EXECUTABLE"
+                and target["name"] not in dict(left_out)}
+            return Configured(left_out=left_out, programs=tuple(sorted(programs)),
+                              targets=tuple(target["name"] for target in targets))
         shutil.rmtree(place / "devel" / name, ignore_errors=True)  # so that no other finds it
         absent = place / f"{name}.absent"
         absent.touch()
@@ -178,7 +185,7 @@ class _Run:
         return done.returncode, done.stdout
 
 
-def _targets(build: Path, folder: Path) -> tuple[str, ...]:
+def _targets(build: Path, folder: Path) -> list[dict]:
     """The programs and libraries that a package's own folders define, by CMake's file API."""
     reply = (build / QUERY).parents[1] / "reply"
     model = json.loads(next(reply.glob("codemodel-v2-*.json")).read_text("utf-8"))["configurations"]
@@ -187,14 +194,15 @@ def _targets(build: Path, folder: Path) -> tuple[str, ...]:
         target = json.loads((reply / entry["jsonFile"]).read_text("utf-8"))
         place = folder / model[0]["directories"][entry["directoryIndex"]]["source"]
         if target["type"] != "UTILITY" and folder in (place, *place.parents):
-            found.append(target["name"])
-    return tuple(found)
+            found.append(target)
+    return found
 
 
 def _digests(packages: Mapping[str, Package], graph: Mapping[str, set[str]], order: list[str],
              words: list[str]) -> dict[str, str]:
     """For each package, a digest of what CMake's answer depends on."""
-    machine = [*words, os.environ.get("CMAKE_PREFIX_PATH", ""), *hook(),
+    machine = [*(field.name for field in fields(Configured)), *words, *hook(),
+               os.environ.get("CMAKE_PREFIX_PATH", ""),
                str(DPKG.stat().st_mtime_ns if DPKG.exists() else 0)]
     machine += [Path(word.partition("=")[2]).read_text("utf-8") for word in hook()]
     found: dict[str, str] = {}

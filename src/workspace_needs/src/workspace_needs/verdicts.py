@@ -30,6 +30,7 @@ class Verdict:
     lacks: dict[str, str] = field(default_factory=dict)  # missing, but not needed to build: reason
     left_out: dict[str, str] = field(default_factory=dict)  # target or source file: reason
     clashes: dict[str, str] = field(default_factory=dict)  # stops for catkin_make alone: reason
+    programs: tuple[str, ...] | None = None  # what rosrun starts once it is built; None: unknown
     hides_ours: bool = False  # it is left out because our package of its name must be found
 
     @property
@@ -94,6 +95,7 @@ class _Judgement:
         self._look_at_includes(verdict, package)
         if result and not result.error:
             verdict.left_out = {f"target {target}": why for target, why in result.left_out}
+            verdict.programs = result.programs
         return verdict
 
     def _missing(self, verdict: Verdict, key: str) -> bool:

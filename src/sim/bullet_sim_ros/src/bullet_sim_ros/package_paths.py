@@ -61,8 +61,8 @@ def _manifests(path: str) -> Iterator[Path]:
 
 
 def open_resources(environ: Mapping[str, str] = os.environ) -> Resources:
-    """Search paths of this process, like those of gazebo_ros_paths_plugin.cpp."""
-    ros_paths = rospkg.get_ros_paths()
+    """Search paths of a process with `environ`, like those of gazebo_ros_paths_plugin.cpp."""
+    ros_paths = rospkg.get_ros_paths(environ)
     packages = list_packages(ros_paths)
 
     def find_package(name: str) -> str:

@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from functools import cache, partial
 from pathlib import Path
+from types import MappingProxyType
 
 import roslib.packages
 import rospkg
@@ -36,6 +37,8 @@ from bullet_sim_ros.package_paths import open_resources
 SPAWNERS = ("spawn_model", "spawn_model.py", "spawn_urdf")
 SERVERS = ("gzserver", "gazebo", "debug")
 OF_OPENCV = "%YAML:"  # no YAML: what cv::FileStorage writes
+Unbuilt = Mapping[str, Collection[str] | None]  # names of programs by package; None: unknown
+NONE_UNBUILT: Unbuilt = MappingProxyType({})
 SEARCH_PATHS = ("GAZEBO_MODEL_PATH", "GAZEBO_RESOURCE_PATH")
 LARGEST_SCRIPT = 2**20  # bytes
 CALLS_XACRO = re.compile(rb"\bxacro(\.py)?[\s\"',)]|\bxacro\.process_file|import xacro\b")
@@ -85,15 +88,22 @@ def _runs_xacro(file: str) -> bool:
 
 
 class LaunchChecker:
-    """Checks one launch file at a time."""
+    """Checks one launch file at a time.
+
+    `unbuilt`: packages that may not be built yet, and the programs that their build makes.
+    """
 
     def __init__(self, rows: dict[str, Row], texts: TextChecker, resources: Resources,
-                 run_commands: bool):
+                 run_commands: bool, environ: Mapping[str, str] = os.environ,
+                 unbuilt: Unbuilt = NONE_UNBUILT):
         self._rows = rows
+        self._environ = environ
+        self._unbuilt = unbuilt
         self._run_commands = run_commands
         self._texts = texts
         self._resources = resources
-        packages = rospkg.RosPack()  # each lists all packages, when it is first asked
+        # It lists all packages, when it is first asked.
+        packages = rospkg.RosPack(rospkg.get_ros_paths(environ))
         self._find_node = cache(  # which looks through a whole package
             partial(roslib.packages.find_node, rospack=packages))
 
@@ -149,18 +159,17 @@ class LaunchChecker:
                    for name, value in node.environ if name in SEARCH_PATHS}
         if not written:
             return self
-        resources = open_resources({**os.environ, **written})
+        environ = {**self._environ, **written}
+        resources = open_resources(environ)
         return LaunchChecker(self._rows, self._texts.with_resources(resources), resources,
-                             self._run_commands)
+                             self._run_commands, environ, self._unbuilt)
 
     def _node(self, node: LaunchedNode, launch: Launch, where: str) -> Iterator[Finding]:
         name = f"node {node.package}/{node.type}"
         try:
             files = self._find_node(node.package, node.type)
             if not files:
-                near = did_you_mean(node.type, _executables(node.package), 0.75)
-                yield Finding(where, name, ABSENT, f"package {node.package} has no executable "
-                              f"{node.type} here{near}")
+                yield self._not_there(node, where, name)
                 return
         except rospkg.ResourceNotFound:
             yield Finding(where, name, ABSENT,
@@ -175,6 +184,18 @@ class LaunchChecker:
             yield from self._world(words, launch, where)
         elif node.package == "gazebo_ros" and node.type in SPAWNERS:
             yield from self._spawned(words, node, launch, where)
+
+    def _not_there(self, node: LaunchedNode, where: str, name: str) -> Finding:
+        """A finding about a program that its package has not, or not before it is built."""
+        programs = self._unbuilt.get(node.package, ())
+        if programs is None:
+            return Finding(where, name, UNCHECKED, "what the build makes of package "
+                           f"{node.package} is not known: see what stands at that package")
+        if node.type in programs:
+            return Finding(where, name, WORKS, "once the workspace is built")
+        near = did_you_mean(node.type, {*_executables(node.package), *programs}, 0.75)
+        return Finding(where, name, ABSENT,
+                       f"package {node.package} has no executable {node.type} here{near}")
 
     def _world(self, words: list[str], launch: Launch, where: str) -> list[Finding]:
         values = [word for word in words if not word.startswith("-") and ":=" not in word]
