@@ -559,7 +559,7 @@ def test_yaml_that_does_not_end(package, capsys, text, said):
 
 
 def test_yaml_whose_aliases_grow_is_bounded(package, capsys, monkeypatch):
-    monkeypatch.setattr("bullet_sim_ros.check.command.LONGEST", 1.0)
+    monkeypatch.setattr("bullet_sim_ros.check.contents.LONGEST", 1.0)
     lines = ["a0: &a0 {x: 1}", *(f"a{n}: &a{n} {{p: *a{n - 1}, q: *a{n - 1}}}"
                                  for n in range(1, 40))]
     assert main([package(laughs__yaml="\n".join(lines))]) == 1
