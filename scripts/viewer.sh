@@ -17,6 +17,8 @@ done
 page_line() { python3 -c 'from sim_viewer.running_page import running_page
 said = running_page("sim_viewer", "")
 print(said[0] % said[1:] if said else "")' "${arguments[@]/#/_}"; }
+# What a log says went wrong, three lines of it at most; fails if there is none.
+reasons() { grep -a 'runs already\|has died\|FATAL\|ERROR\|Exception' "$1" | tail -n 3 | grep . >&2; }
 if ! choose_master; then
   page=$(page_line)
   [ -n "$page" ] || page=$"To see it in the browser, type: source devel/setup.bash; roslaunch sim_viewer viewer.launch"
@@ -33,7 +35,7 @@ trap 'exit 130' TERM HUP
 say $"The course is starting; its nodes' output is in out/viewer.log. Ctrl-C ends both course and page."
 until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; do
   if ! kill -0 "$launched" 2> /dev/null; then
-    tail -n 5 "$root/out/viewer.log" >&2
+    reasons "$root/out/viewer.log" || tail -n 5 "$root/out/viewer.log" >&2
     echo $"viewer: the course did not start; the full output is in out/viewer.log" >&2
     exit 2
   fi
@@ -50,6 +52,6 @@ else
   wait -n "$launched" "$page" || true
   kill -0 "$launched" 2> /dev/null && exit 1  # the page has said why it ended
 fi
-grep -a 'runs already\|has died\|FATAL\|ERROR\|Exception' "$root/out/viewer.log" | tail -n 3 >&2 || true
+reasons "$root/out/viewer.log" || true
 echo $"viewer: the course has ended, and with it the page; the full output is in out/viewer.log" >&2
 exit 1

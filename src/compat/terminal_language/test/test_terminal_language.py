@@ -102,3 +102,14 @@ def test_a_line_of_separators_takes_linear_time():
 
 def test_a_catalogue_is_read_once():
     assert read_catalogue("zh_CN") is read_catalogue("zh_CN")
+
+
+@pytest.mark.parametrize(("english", "part"), [
+    ("A simulator runs already on this master (world course, started 3 min ago). End it with "
+     "Ctrl-C in its terminal, then type this again.", "世界 course，3 分钟前启动"),
+    ("rviz has no window here; the page in the browser does its work, tab RViz. Type: roslaunch",
+     "浏览器页面的 RViz 标签页"),
+    ("line 1: it ends as lines do on Windows, so that no interpreter is found; type: sed x",
+     "行尾是 Windows 的换行符，因此找不到解释器；请输入：sed x")])
+def test_no_english_word_is_left_within_a_translated_line(english, part):
+    assert part in read_catalogue("zh_CN").translate(english)

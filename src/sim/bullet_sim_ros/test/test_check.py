@@ -2,6 +2,7 @@
 
 import mmap
 import os
+import re
 import threading
 import time
 from pathlib import Path
@@ -12,6 +13,7 @@ import rospy
 
 from bullet_sim_ros.check import contents, launch_files, workspaces
 from bullet_sim_ros.check.command import main
+from bullet_sim_ros.check.findings import PROBLEM, Finding, table
 
 ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
   <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
@@ -535,6 +537,13 @@ def test_a_workspace_is_looked_at_for_a_bounded_time(workspace, monkeypatch):
     code, said = workspace(arm__urdf="<robot", b__yaml="a: 1\n")
     assert code == 0 and "not checked   2 of its 2 files: the -1 s for the workspace are" in said
     assert said.endswith("all that was checked will work\n")
+
+
+def test_a_finding_is_translated_without_its_status(monkeypatch):
+    monkeypatch.setenv("LC_ALL", "C.UTF-8")
+    monkeypatch.setenv("LANGUAGE", "zh_CN")
+    found = Finding("a", "build", PROBLEM, "it is left out: x: MoveIt is not in Debian")
+    assert re.search(r"有问题 +build: 略去它：x：", table([found]))
 
 
 def test_yaml_of_a_package(package, capsys):

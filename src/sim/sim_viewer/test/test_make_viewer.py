@@ -57,6 +57,14 @@ def viewer(tmp_path, usual_port_free):
         process.wait(END_LIMIT)
 
 
+def test_a_master_that_is_not_there_is_named():
+    done = subprocess.run(["make", "viewer"], cwd=ROOT, timeout=LIMIT, capture_output=True,
+                          text=True, env={**os.environ, "LC_ALL": "C.UTF-8",
+                                          "ROS_MASTER_URI": "http://nowhere.invalid:11311"})
+    assert done.returncode == 2
+    assert "unable to contact ROS master at [http://nowhere.invalid:11311]" in done.stderr
+
+
 def address_in(log: Path, process) -> str:
     """The page's address, once it is printed."""
     until = time.monotonic() + LIMIT

@@ -26,7 +26,8 @@ RUNS_ALREADY = ("A simulator runs already on this master (%s). End it with Ctrl-
                 "then type this again.")
 HANGS = ("A simulator is on this master, but does not answer (%s). End it with: killall -9 "
          "gzserver, then type this again.")
-UNITS = ((3600, "h"), (60, "min"), (1, "s"))
+AGES = ((3600, "world %s, started %d h ago"), (60, "world %s, started %d min ago"),
+        (1, "world %s, started %d s ago"))
 
 
 def refusal(master_uri: str, name: str) -> tuple[str, ...]:
@@ -68,8 +69,8 @@ def _what_runs(master_uri: str, name: str) -> str:
         world = running["world"]
     except (rosgraph.MasterException, KeyError, TypeError):  # real Gazebo, or a deleted parameter
         return name
-    size, unit = next(one for one in UNITS if age >= one[0] or one[0] == 1)
-    return f"world {world}, started {age // size} {unit} ago"
+    unit, text = next(one for one in AGES if age >= one[0] or one[0] == 1)
+    return text % (world, age // unit)
 
 
 def main() -> int:

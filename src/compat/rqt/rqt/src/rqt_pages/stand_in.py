@@ -37,8 +37,10 @@ def line_for(tool: str, arguments: Sequence[str]) -> str:
     page = DRIVING if tool in CONTROLS else PAGE
     if TABS.get(tool) == "RViz" and (file := _display_config(arguments)):
         page = f"{RVIZ_PAGE} {file}"
-    tab = f", tab {TABS[tool]}" if tool in TABS else ""
-    return f"{tool} has no window here; the page in the browser does its work{tab}. Type: {page}"
+    if tool in TABS:
+        return (f"{tool} has no window here; the page in the browser does its work, "
+                f"tab {TABS[tool]}. Type: {page}")
+    return f"{tool} has no window here; the page in the browser does its work. Type: {page}"
 
 
 def _display_config(arguments: Sequence[str]) -> str:

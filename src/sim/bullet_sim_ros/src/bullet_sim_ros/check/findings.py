@@ -36,10 +36,11 @@ def table(findings: Iterable[Finding]) -> str:
         if finding.where != last:
             lines.append("\n" + shortened(finding.where))
             last = finding.where
-        how = f": {finding.how}" if finding.how else ""
+        # Each for itself: "build: it" would be taken for what is left out.
+        said = ": ".join(map(translated, filter(None, (finding.part, finding.how))))
         word = translated(WORDS[finding.status])
         wide = sum(east_asian_width(letter) == "W" for letter in word)  # two columns each
-        lines.append(shortened(f"  {word:{13 - wide}s} {finding.part}{how}"))
+        lines.append(shortened(f"  {word:{13 - wide}s} {said}"))
     return "\n".join(lines).lstrip("\n")
 
 

@@ -80,13 +80,14 @@ def script_finding(path: Path) -> Iterator[Finding]:
 
 def _fault(line: bytes, path: Path) -> str:
     if line.startswith(BYTE_ORDER_MARK + b"#!"):
+        command = rf"sed -i '1s/^\xEF\xBB\xBF//' {shlex.quote(str(path))}"
         return ("a byte order mark stands before #!, so that no interpreter is found; type: "
-                f"sed -i '1s/^\\xEF\\xBB\\xBF//' {shlex.quote(str(path))}")
+                f"{command}")
     if not line.startswith(b"#!"):
         return ""
     if line.endswith(b"\r"):
-        return ("it ends as lines do on Windows, so that no interpreter is found; type: "
-                f"sed -i 's/\\r$//' {shlex.quote(str(path))}")
+        command = rf"sed -i 's/\r$//' {shlex.quote(str(path))}"
+        return f"it ends as lines do on Windows, so that no interpreter is found; type: {command}"
     words = line[2:].decode("utf-8", "replace").split()
     name = words[0] if words else ""
     if Path(name).name == "env":
