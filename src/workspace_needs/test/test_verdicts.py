@@ -134,6 +134,16 @@ def test_what_is_configured_later_stops_a_package(tmp_path, bare):
     assert of(source, "arm_2").builds
 
 
+@pytest.mark.parametrize("kind", ["SHARED", "STATIC"])
+def test_a_package_may_use_the_library_of_another(tmp_path, bare, kind):
+    source = tmp_path / "src"
+    folder = add_package(source, "arm", "", "", f"catkin_package(LIBRARIES arm)\n"
+                         f"add_library(arm {kind} src/arm.cpp)\nreturn()")
+    (folder / "src/arm.cpp").write_text("int links() { return 1; }", encoding="utf-8")
+    add_package(source, "hand", "arm", "arm")
+    assert of(source, "hand").builds
+
+
 def test_what_no_catkin_can_build_is_left_out(tmp_path, bare):
     source = tmp_path / "src"
     (add_package(source, "empty") / "CMakeLists.txt").unlink()

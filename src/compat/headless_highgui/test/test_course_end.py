@@ -66,6 +66,11 @@ def asked(monkeypatch):
     return close
 
 
+def test_a_program_that_watches_its_topics_itself_says_no_more(asked, monkeypatch):
+    monkeypatch.setitem(sys.modules, course_end.WATCHES_ITSELF, SimpleNamespace())
+    assert asked() == []
+
+
 def test_once_for_each_simulator(asked):
     asked()
     asked(kind="sensor_msgs/LaserScan")

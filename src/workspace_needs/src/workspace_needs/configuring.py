@@ -147,6 +147,7 @@ class _Run:
         if not code:
             folder = self._packages[name].folder.resolve()
             targets = _targets(place / "build" / name, folder)
+            _pretend_built(targets, place / "devel" / name / "lib")
             relays = place / "devel" / name / "lib" / name  # of catkin_install_python
             programs = {path.name for path in relays.glob("*")} | {
                 target["nameOnDisk"] for target in targets if target["type"] == "EXECUTABLE"
@@ -196,6 +197,15 @@ def _targets(build: Path, folder: Path) -> list[dict]:
         if target["type"] != "UTILITY" and folder in (place, *place.parents):
             found.append(target)
     return found
+
+
+def _pretend_built(targets: Iterable[Mapping], folder: Path) -> None:
+    """Put an empty file where each library will be: catkin looks for those that a package exports
+    while it configures the packages that depend on it."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for target in targets:
+        if target["type"] in ("SHARED_LIBRARY", "STATIC_LIBRARY", "MODULE_LIBRARY"):
+            (folder / target["nameOnDisk"]).touch()
 
 
 def _digests(packages: Mapping[str, Package], graph: Mapping[str, set[str]], order: list[str],
