@@ -37,7 +37,8 @@ def test_the_locale_decides(environment, language):
     (["python3", f"{home()}/src/evaluation/scripts/course_run.py", "-c"], True),
     (["python3", "-u", f"{home()}/devel/lib/x/y.py"], True),
     (["python3", "/usr/bin/rostopic"], False),
-    (["python3", "/home/learner/catkin_ws/src/a/scripts/b.py"], False), (["python3", "-c", "x"], False),
+    (["python3", "/home/learner/catkin_ws/src/a/scripts/b.py"], False),
+    (["python3", "-c", "x"], False),
     (["python3", "-P", "-X", "gzserver", "-m", "terminal_language"], True),
     (["python3"], False), (["python3", "-m", "pytest"], False),
     (["python3", "-m", "terminal_language"], True)])
