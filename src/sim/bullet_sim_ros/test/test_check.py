@@ -15,6 +15,9 @@ from bullet_sim_ros.check import contents, launch_files, workspaces
 from bullet_sim_ros.check.command import main
 from bullet_sim_ros.check.findings import PROBLEM, Finding, table
 
+# A file is checked in a fork of this process, which must not hold engines or OpenGL of other tests.
+pytestmark = pytest.mark.processes
+
 ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
   <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
   <visual><geometry><box size="1 1 1"/></geometry></visual></link>{}</robot>"""
