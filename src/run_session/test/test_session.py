@@ -85,7 +85,7 @@ def test_a_drive_that_broke_off_leaves_no_report(tmp_path):
 
 
 def test_a_drive_that_could_not_say_why_for_a_full_disk_names_that(tmp_path, monkeypatch):
-    full = SimpleNamespace(f_bavail=0, f_frsize=4096, f_files=0, f_favail=0)
+    full = SimpleNamespace(f_blocks=9, f_bavail=0, f_frsize=4096, f_files=0, f_favail=0)
     monkeypatch.setattr(os, "statvfs", lambda _folder: full)
     with Session(tmp_path) as session, pytest.raises(OSError, match=str(tmp_path)) as said:
         session.start_drive(["python3", "-c", "raise SystemExit(120)"], tmp_path).report(60.0, "a")
