@@ -53,7 +53,7 @@ def test_exports_of_packages_are_search_paths(packages):
     ("<package>EXPORT</package>", None),
     ("<package format='2'><name>bad</name><version>one</version>EXPORT</package>", None),
     ("<package><name>bad</name>EXPORT", "bad/package.xml is not well-formed XML"),
-    ("<package><name>bad</name>EXPORT<version>&nbsp;</version></package>", "is not well-formed"),
+    ("<package><name>bad</name>EXPORT<version>&nbsp;</package>", "is not well-formed"),
 ])
 def test_a_manifest_that_rospkg_refuses_does_not_end_the_simulator(packages, caplog, broken, said):
     good = packages("good", '<gazebo_ros gazebo_model_path="${prefix}/models"/>')
