@@ -42,6 +42,7 @@ def said(monkeypatch):
 def asked(monkeypatch):
     """Closes a connection of a subscriber; what was looked into then: topics and publishers."""
     found = []
+    monkeypatch.delitem(sys.modules, course_end.WATCHES_ITSELF, raising=False)  # of other tests
     monkeypatch.setattr(course_end, "GRACE", 0.0)
     monkeypatch.setattr(course_end, "tell", lambda *what: found.append(what))
 
