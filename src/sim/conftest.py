@@ -5,7 +5,7 @@ import gc
 import pytest
 
 from bullet_sim.physics.client import PhysicsClient
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 
 
 @pytest.fixture(autouse=True)

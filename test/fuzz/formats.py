@@ -10,9 +10,9 @@ from target import ROOT, Target, found
 
 from bullet_sim.description import WorldDescription
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats import Resources, load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.ogre import parse_script
-from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.formats.resources import DATA_FOLDER, Resources
 from bullet_sim.formats.sdf.material import find_material
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.xacro.bounds import run_bounded

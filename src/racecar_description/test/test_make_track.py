@@ -20,7 +20,8 @@ from racecar_description.track.from_numbers import from_seed
 from racecar_description.track.track_file import load_track_file
 from racecar_description.track.wishes import Wishes
 
-from bullet_sim.formats import Resources, load_world
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.world import World
 
 PACKAGE = Path(__file__).resolve().parent.parent

@@ -14,7 +14,8 @@ from bullet_sim.description import (
     ModelDescription,
     SensorDescription,
 )
-from bullet_sim.formats import Resources, load_world
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.sensors.camera import Camera

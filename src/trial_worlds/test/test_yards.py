@@ -9,7 +9,8 @@ import pytest
 from rospkg import RosPack
 
 from bullet_sim.description import Collision, Cylinder, LinkDescription, ModelDescription
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from bullet_sim.world import World

@@ -8,7 +8,8 @@ import rospkg
 from roslaunch.config import ROSLaunchConfig
 from roslaunch.xmlloader import XmlLoader
 
-from bullet_sim.formats import Resources, load_world
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import Resources
 
 LAUNCH = Path(__file__).resolve().parents[1] / "launch"
 RESOURCES = Resources.from_environment({})

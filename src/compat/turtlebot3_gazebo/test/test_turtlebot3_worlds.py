@@ -11,7 +11,7 @@ from turtlebot3_gazebo.making.courses import course_2017, course_2020
 from turtlebot3_gazebo.making.everything import everything
 from turtlebot3_gazebo.making.painting import RED, WHITE, YELLOW, Canvas
 
-from bullet_sim.formats import load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from bullet_sim.world import World

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from bullet_sim.formats import Resources, load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.pose import Pose
 from bullet_sim.sensors.laser import Laser
 from bullet_sim.world import World

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import cv2
 
-from bullet_sim.formats import Resources, load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.sensors.camera import Camera

@@ -4,7 +4,8 @@ import math
 from pathlib import Path
 
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
-from bullet_sim.formats import Resources, load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 

@@ -3,7 +3,8 @@
 import numpy as np
 
 from bullet_sim.description import Box, Cylinder, Geometry, ModelDescription, Sphere
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 
 RESOURCES = Resources.from_environment({})
 

@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.physics.assembly import assemble
 from bullet_sim.world import World
 

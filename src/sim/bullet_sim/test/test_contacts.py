@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from bullet_sim.description import Box, Collision, Cylinder, Plane, Sphere, Surface
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.physics.contact_parameters import contact_values
 from bullet_sim.physics.contacts import signed_distance
 from bullet_sim.pose import IDENTITY, Pose, conjugate, rotate

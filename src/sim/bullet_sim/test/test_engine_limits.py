@@ -16,10 +16,11 @@ from bullet_sim.description import (
     WorldDescription,
 )
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.physics.collision_filters import CollisionFilters
+from bullet_sim.physics.engine import STDERR, STDOUT, EngineError, pybullet, quiet
 from bullet_sim.physics.parameter_bounds import KEPT, MOST_POSITIONS
-from bullet_sim.physics.quiet import STDERR, STDOUT, EngineError, pybullet, quiet
 from bullet_sim.pose import Pose, quaternion_from_rpy, rotation_matrix
 from bullet_sim.world import World
 

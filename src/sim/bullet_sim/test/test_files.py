@@ -8,7 +8,8 @@ import pytest
 from bullet_sim.description import Heightmap, ImageExtrusion, Mesh
 from bullet_sim.errors import FormatError
 from bullet_sim.files import check_file
-from bullet_sim.formats import Resources, load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf.material import LARGEST_SCRIPT
 from bullet_sim.meshes.generated import generated_parts
 from bullet_sim.meshes.images import load_image

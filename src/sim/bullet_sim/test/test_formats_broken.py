@@ -10,7 +10,8 @@ import pybullet_data
 import pytest
 
 from bullet_sim.errors import FormatError, SimulationError
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 
 FOREIGN = [file for file in Path(pybullet_data.getDataPath()).rglob("*.urdf")
            if "random_urdfs" not in file.parts]

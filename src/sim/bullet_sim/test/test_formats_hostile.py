@@ -6,10 +6,10 @@ import tracemalloc
 import pytest
 
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources, load_model, load_world, xml_text
-from bullet_sim.formats.loading import MOST
+from bullet_sim.formats import xml_text
+from bullet_sim.formats.loading import MOST, load_model, load_world
 from bullet_sim.formats.ogre import parse_script
-from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.formats.resources import DATA_FOLDER, Resources
 from bullet_sim.formats.xml_text import LARGEST_TEXT
 from bullet_sim.world import World
 

@@ -5,7 +5,9 @@ import logging
 import pytest
 
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources, load_model, load_world, mistakes
+from bullet_sim.formats import mistakes
+from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.world import World
 
 OTHER = """<model name="other"><link name="l"><collision name="c"><geometry><sphere/></geometry>

@@ -11,7 +11,8 @@ import sys
 import pytest
 
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources, load_light, load_model, load_world
+from bullet_sim.formats.loading import load_light, load_model, load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.xml_values import numbers
 
 INERTIAL = """<inertial><mass value="1"/>

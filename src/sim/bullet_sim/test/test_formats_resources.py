@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from bullet_sim.errors import ResourceNotFound
-from bullet_sim.formats import Resources, load_world
-from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import DATA_FOLDER, Resources
 
 
 def touch(path: Path) -> Path:

@@ -6,7 +6,8 @@ import pytest
 
 from bullet_sim.description import Box, Inertial, Plane, Surface
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources, load_light, load_model
+from bullet_sim.formats.loading import load_light, load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.source import NEWEST_SDF, sdf_version
 
 NO_FILES = Resources()

@@ -7,7 +7,8 @@ import pytest
 
 from bullet_sim.description import Box, Cylinder, Inertial
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.urdf.lumping import combined
 from bullet_sim.pose import Pose
 

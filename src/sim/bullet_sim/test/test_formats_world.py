@@ -7,8 +7,8 @@ import pytest
 
 from bullet_sim.description import PhysicsDescription, SceneDescription
 from bullet_sim.errors import ResourceNotFound
-from bullet_sim.formats import Resources, load_world
-from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import DATA_FOLDER, Resources
 
 BOX = """<link name="link"><pose>0 0 0.5 0 0 0</pose><collision name="c"><geometry><box>
       <size>1 1 1</size>

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from bullet_sim.physics.auto_disable import SAMPLE_PERIOD
+from bullet_sim.physics.engine import pybullet
 from bullet_sim.physics.island_sleeping import IslandSleeping
-from bullet_sim.physics.quiet import pybullet
 
 
 class Pair:

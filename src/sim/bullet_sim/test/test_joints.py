@@ -7,9 +7,10 @@ import pytest
 
 from bullet_sim.description import WorldDescription
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.joint import LoopJoint
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 from bullet_sim.pose import Pose
 from bullet_sim.twist import Twist
 from bullet_sim.world import World

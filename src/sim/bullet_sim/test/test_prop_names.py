@@ -5,8 +5,8 @@ Facts of the public model files of that address, newest version.
 
 import pytest
 
-from bullet_sim.formats import Resources, load_world
-from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import DATA_FOLDER, Resources
 
 RESOURCES = Resources([DATA_FOLDER / "models"], [DATA_FOLDER])
 OWN = {

@@ -7,7 +7,7 @@ from prop_models import RESOURCES, bounds, load
 
 from bullet_sim.description import Cylinder
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.prop_shapes import FILE, PropMesh, read_prop_meshes
 from bullet_sim.formats.resources import DATA_FOLDER
 from bullet_sim.pose import Pose

@@ -19,7 +19,7 @@ from bullet_sim.description import (
     Sphere,
 )
 from bullet_sim.errors import ResourceNotFound
-from bullet_sim.formats import load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.resources import DATA_FOLDER
 from bullet_sim.pose import Pose
 from bullet_sim.world import World

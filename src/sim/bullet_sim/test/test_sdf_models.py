@@ -3,9 +3,9 @@
 import pytest
 
 from bullet_sim.description import Box, Material
-from bullet_sim.formats import Resources, load_model, load_world
 from bullet_sim.formats.gazebo_materials import named_materials
-from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.resources import DATA_FOLDER, Resources
 from bullet_sim.rendering.scene import link_shape
 
 BOX = '<geometry><box><size>1 1 1</size></box></geometry>'

@@ -2,7 +2,8 @@
 
 import pytest
 
-from bullet_sim.formats import Resources, load_world
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.world import World
 
 DOOR = """<model name="door">

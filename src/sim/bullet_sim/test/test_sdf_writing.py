@@ -7,7 +7,8 @@ import pytest
 
 from bullet_sim.description import LinkDescription, ModelDescription, Polyline, Visual
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf.writing import sdf_text
 
 INERTIAL = """<inertial><origin xyz="0.1 0 0"/><mass value="2"/>

@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from bullet_sim.formats import Resources, load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.world import World
 
 WORLD = """<sdf version="1.6"><world name="w"><physics type="ode"><ode><constraints>

@@ -6,7 +6,8 @@ import time
 import pytest
 
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources, load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.tinyxml import as_xml
 from bullet_sim.formats.xml_text import parse_xml
 from bullet_sim.formats.xml_values import read_xml_file

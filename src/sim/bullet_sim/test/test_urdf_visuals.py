@@ -6,7 +6,7 @@ import pytest
 
 from bullet_sim.description import Box, Cylinder, Sphere
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.urdf.visuals import read_robot_visuals
 
 ROBOT = """<robot name="car">

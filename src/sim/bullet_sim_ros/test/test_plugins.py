@@ -16,9 +16,9 @@ from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.plugin_host import registry
+from bullet_sim_ros.plugin_host.host import PluginHost
 from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.plugin_host.registry import load_plugins, plugin
-from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.scheduler import Scheduler
 from bullet_sim_ros.services.models import with_namespace
@@ -85,7 +85,7 @@ def load(world, *plugins, sensor: SensorDescription | None = None):
     link = LinkDescription("link", sensors=(sensor,) if sensor else ())
     model = world.spawn(ModelDescription("robot", static=True, links=(link,), plugins=plugins))
     scheduler = Scheduler(world)
-    shared = SharedByPlugins(world, None, scheduler, None, Lockstep("", 0.0, Mailbox()))
+    shared = PluginHost(world, None, scheduler, None, Lockstep("", 0.0, Mailbox()))
     return load_plugins(shared, model), scheduler
 
 

@@ -11,7 +11,8 @@ from sim_bench import made_worlds
 from sim_bench.parts.worlds import TRIANGLES, WORLDS
 
 from bullet_sim.description import Mesh
-from bullet_sim.formats import Resources, load_world
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.meshes.loading import load_mesh
 
 

@@ -14,7 +14,8 @@ import rospkg
 
 from bullet_sim.description import Box, Collision, Cylinder, Geometry, Sphere
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 from trial_worlds.errors import WorldError

@@ -15,7 +15,7 @@ from xml.etree.ElementTree import Element
 import cv2
 import numpy as np
 
-from bullet_sim.formats import Resources
+from bullet_sim.formats.resources import Resources
 from trial_worlds.errors import WorldError
 
 MODEL = "model://"

@@ -11,7 +11,8 @@ import numpy as np
 import rospkg
 from scipy import ndimage
 
-from bullet_sim.formats import Resources, load_world
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.world import World
 from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.rays import cast

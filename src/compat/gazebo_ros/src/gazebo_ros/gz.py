@@ -22,7 +22,8 @@ from geometry_msgs.msg import Point, Pose, Quaternion
 from std_srvs.srv import Empty
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats import Resources, load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf.writing import VERSION, sdf_text
 from bullet_sim.formats.xml_values import read_xml_file
 from bullet_sim.pose import quaternion_from_rpy, rpy_from_quaternion

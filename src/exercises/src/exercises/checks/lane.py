@@ -17,7 +17,7 @@ from lane_keeping.road_view import RoadView, road_view
 from lane_keeping.settings import load_settings
 from racecar_description.track.closed_line import Track, load_track
 
-from bullet_sim.formats import load_world
+from bullet_sim.formats.loading import load_world
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import open_renderer

@@ -12,7 +12,7 @@ from driving_courses.packages import find_file
 from driving_courses.resources import package_folder, resources
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats import load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.formats.xml_values import parse_xml
 from bullet_sim.pose import Pose

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from bullet_sim.model import Model
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.client import PhysicsClient
-from bullet_sim.physics.quiet import EngineError
+from bullet_sim.physics.engine import EngineError
 
 log = logging.getLogger(__name__)
 

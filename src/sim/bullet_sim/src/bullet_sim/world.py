@@ -18,8 +18,8 @@ from bullet_sim.model import Model
 from bullet_sim.nan_recovery import lost_models, recover_from_nan
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.contacts import Contact, read_contacts
+from bullet_sim.physics.engine import EngineError
 from bullet_sim.physics.parameter_bounds import check_kept, check_physics, possible_physics
-from bullet_sim.physics.quiet import EngineError
 from bullet_sim.physics.rays import RayHits, cast_rays
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.profiler import Profiler

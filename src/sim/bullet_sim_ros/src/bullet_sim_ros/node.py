@@ -15,7 +15,8 @@ import rospy
 from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats import Resources, load_world
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.physics.parameter_bounds import possible_physics
 from bullet_sim.world import World
 from bullet_sim_ros import names, topic_faults

@@ -11,7 +11,7 @@ import rospkg
 from workspace_needs.hidden import unsourced
 
 from bullet_sim.errors import FormatError, ResourceNotFound
-from bullet_sim.formats import Resources
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.xml_values import child_text, read_xml_file
 
 log = logging.getLogger("bullet_sim.packages")

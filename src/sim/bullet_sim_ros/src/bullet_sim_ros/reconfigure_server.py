@@ -54,7 +54,7 @@ def offer_changes(context: PluginContext, namespace: str, values: Mapping[str, V
     def changed(new: dict[str, float | bool]) -> None:
         """Called in a ROS thread; the first time at once."""
         if begun:
-            context.services.mailbox.post(lambda: change(new))
+            context.host.mailbox.post(lambda: change(new))
         begun.append(True)
 
     offer_values(context, namespace, values, changed)

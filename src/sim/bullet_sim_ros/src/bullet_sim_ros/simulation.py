@@ -8,7 +8,7 @@ from rosgraph_msgs.msg import Clock
 
 from bullet_sim.description import ModelDescription
 from bullet_sim.model import Model
-from bullet_sim.physics.quiet import EngineError
+from bullet_sim.physics.engine import EngineError
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
@@ -18,8 +18,8 @@ from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.pacer import Pacer
 from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.plugin_host.context import PluginContext
+from bullet_sim_ros.plugin_host.host import PluginHost
 from bullet_sim_ros.plugin_host.registry import load_plugins, load_world_plugins
-from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.real_time_factor import RealTimeFactorMonitor
 from bullet_sim_ros.rospy_patches import set_time
 from bullet_sim_ros.scheduler import Scheduler
@@ -40,10 +40,10 @@ class Simulation:
         self._drawing = DrawingThread(world.profiler)
         self.lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox,
                                  parameters.lockstep_sensor)
-        self._services = SharedByPlugins(
+        self._host = PluginHost(
             world, self.mailbox, self.scheduler, self._drawing, self.lockstep
         )
-        self.senders = self._services.senders
+        self.senders = self._host.senders
         self._plugins: dict[str, list[PluginContext]] = {}
         world.each_removal.append(self._close_plugins)
         self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10)
@@ -53,7 +53,7 @@ class Simulation:
         self.state_calls: Counter[str] = Counter()  # get_model_state calls by model: header.seq
         for model in world.models.values():
             self._load_plugins(model)
-        self._world_plugins = load_world_plugins(self._services)
+        self._world_plugins = load_world_plugins(self._host)
         self.lockstep.listen()
 
     # --- the loop
@@ -187,4 +187,4 @@ class Simulation:
             context.close()
 
     def _load_plugins(self, model: Model) -> None:
-        self._plugins[model.name] = load_plugins(self._services, model)
+        self._plugins[model.name] = load_plugins(self._host, model)

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator
 import pytest
 import rospy
 
-from bullet_sim.formats import load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.model import Model
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.world import World

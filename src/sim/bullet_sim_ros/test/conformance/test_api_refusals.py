@@ -7,7 +7,7 @@ import pytest
 from gazebo_msgs.msg import LinkState, ODEJointProperties
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist, Vector3
 
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 from bullet_sim.pose import Pose as Placement
 
 ARM = """<model name="{name}"><link name="base"/><link name="upper"><pose>0 0 1 0 0 0</pose></link>

@@ -8,7 +8,8 @@ import trimesh
 
 from bullet_sim.description import Mesh
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources, load_model
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.meshes import collada, loading
 from bullet_sim.meshes.loading import collision_mesh, load_mesh
 

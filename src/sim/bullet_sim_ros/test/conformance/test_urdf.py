@@ -8,8 +8,9 @@ import pytest
 
 from bullet_sim.description import Box, Cylinder, Sphere
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources, load_model
 from bullet_sim.formats.gazebo_materials import named_materials
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 
 INERTIA = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
 BALL = '<{0}><geometry><sphere radius="0.1"/></geometry></{0}>'

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from bullet_sim.formats import Resources
+from bullet_sim.formats.resources import Resources
 from driving_courses.course import Course
 from driving_courses.packages import find_file, find_package
 

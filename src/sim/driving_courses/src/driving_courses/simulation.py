@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 
 from bullet_sim.description import ModelDescription, Noise, WorldDescription
-from bullet_sim.formats import load_model
+from bullet_sim.formats.loading import load_model
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.formats.xml_values import parse_xml
 from bullet_sim.pose import Pose

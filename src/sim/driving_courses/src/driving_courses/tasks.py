@@ -14,7 +14,7 @@ from ai_robot_tracking.scenes.start import draw_start
 from ai_robot_tracking.scenes.world_file import world_text
 
 from bullet_sim.description import WorldDescription
-from bullet_sim.formats import load_world
+from bullet_sim.formats.loading import load_world
 from driving_courses.course import Course
 from driving_courses.packages import find_file
 from driving_courses.randomisation import Episode

@@ -15,7 +15,7 @@ from racecar_description.track.track_file import load_track_file
 from racecar_description.track.wishes import Wishes
 
 from bullet_sim.description import WorldDescription
-from bullet_sim.formats import load_world
+from bullet_sim.formats.loading import load_world
 from driving_courses.course import Course
 from driving_courses.errors import CourseError
 from driving_courses.packages import find_file

@@ -10,7 +10,8 @@ from racecar_description.track.closed_line import Track, load_track
 
 from bullet_sim.description import SensorDescription
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
-from bullet_sim.formats import Resources, load_model, load_world
+from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.link import Link
 from bullet_sim.model import Model

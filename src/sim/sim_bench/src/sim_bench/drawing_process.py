@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection
 import numpy as np
 
 from bullet_sim.model import Model
-from bullet_sim.physics.quiet import STDOUT
+from bullet_sim.physics.engine import STDOUT
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.world import World

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from bullet_sim.meshes.part import MeshPart
-from bullet_sim.physics.quiet import STDERR, STDOUT, pybullet, quiet
+from bullet_sim.physics.engine import STDERR, STDOUT, pybullet, quiet
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.projection import projection_matrix, view_matrix

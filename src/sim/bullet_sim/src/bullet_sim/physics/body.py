@@ -13,9 +13,9 @@ from bullet_sim.physics.assembly import PhysicsLink, Tree
 from bullet_sim.physics.body_joints import BodyJoints
 from bullet_sim.physics.body_links import BodyLinks
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.engine import EngineError, pybullet
 from bullet_sim.physics.engine_handle import BASE
 from bullet_sim.physics.inertia import sound_inertial
-from bullet_sim.physics.quiet import EngineError, pybullet
 from bullet_sim.physics.springs import Springs
 from bullet_sim.physics.velocity_decay import VelocityDecay
 from bullet_sim.pose import Pose

@@ -9,8 +9,8 @@ from statistics import fmean
 
 from bullet_sim.description import JointDescription
 from bullet_sim.physics.assembly import PhysicsLink
+from bullet_sim.physics.engine import pybullet
 from bullet_sim.physics.engine_handle import EngineHandle
-from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import Quaternion, Vector3
 
 JointWrench = tuple[float, Sequence[float]]  # effort of a motor; force and torque, (6,)

@@ -1,8 +1,8 @@
 """The links of an engine body: their poses, their motion, and forces on them."""
 
 from bullet_sim.physics.assembly import PhysicsLink
+from bullet_sim.physics.engine import pybullet
 from bullet_sim.physics.engine_handle import BASE, EngineHandle
-from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import IDENTITY, Pose, Vector3, normalised
 from bullet_sim.twist import Twist, cross
 

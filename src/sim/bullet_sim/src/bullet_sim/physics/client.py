@@ -8,9 +8,9 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.physics.assembly import Tree
 from bullet_sim.physics.auto_disable import AutoDisable
 from bullet_sim.physics.correcting_velocity import CorrectingVelocityLimit
+from bullet_sim.physics.engine import STDOUT, EngineError, pybullet, quiet
 from bullet_sim.physics.island_sleeping import IslandSleeping
 from bullet_sim.physics.planes import Planes
-from bullet_sim.physics.quiet import STDOUT, EngineError, pybullet, quiet
 from bullet_sim.physics.urdf_text import MeshFiles, urdf_text
 from bullet_sim.pose import Pose, Vector3
 

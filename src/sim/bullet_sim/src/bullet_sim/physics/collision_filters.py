@@ -9,7 +9,7 @@ import itertools
 from bullet_sim.description import ModelDescription
 from bullet_sim.physics.body import Body, fasten
 from bullet_sim.physics.client import PhysicsClient
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 
 ALL_BITS = 0xFFFF  # SDF's default of collide_bitmask
 SHIFT = 8  # of these bits in the engine's masks, past its own groups

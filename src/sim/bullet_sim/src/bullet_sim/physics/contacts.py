@@ -14,7 +14,7 @@ from bullet_sim.description import Box, Collision, Cylinder, Geometry, Mesh, Pla
 from bullet_sim.meshes.loading import collision_mesh
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.client import PhysicsClient
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 from bullet_sim.pose import Pose, Vector3, conjugate, rotate
 
 

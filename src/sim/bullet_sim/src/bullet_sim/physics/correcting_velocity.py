@@ -9,7 +9,7 @@ the world only correct a small part of their depth per step.
 from collections.abc import Callable, Sequence
 
 from bullet_sim.physics.auto_disable import SimulatedBody
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 
 CORRECTED = 0.08  # part of the depth per step; PyBullet's own, for rigid contacts
 ALL = 1.0  # less deep contacts separate at the engine's own velocity

@@ -5,7 +5,7 @@ import math
 
 from bullet_sim.physics.assembly import Tree
 from bullet_sim.physics.client import PhysicsClient
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 
 log = logging.getLogger(__name__)
 

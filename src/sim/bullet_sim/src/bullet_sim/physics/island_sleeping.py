@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Sequence
 from operator import mul
 
 from bullet_sim.physics.auto_disable import SAMPLE_PERIOD, SimulatedBody
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 
 SPEED = 0.1  # m/s, of the mean over SAMPLES: ODEPhysics::Load's threshold
 RATE = 0.1  # rad/s

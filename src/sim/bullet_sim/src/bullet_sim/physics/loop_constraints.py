@@ -8,8 +8,8 @@ from bullet_sim.physics.assembly import WORLD, PhysicsLink
 from bullet_sim.physics.axes import TRAVEL
 from bullet_sim.physics.body import Body, fasten
 from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.engine import pybullet
 from bullet_sim.physics.engine_handle import BASE
-from bullet_sim.physics.quiet import pybullet
 from bullet_sim.pose import Pose, Vector3, rotate
 
 log = logging.getLogger(__name__)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bullet_sim.physics.client import PhysicsClient
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 
 AT_ONCE = pybullet.MAX_RAY_INTERSECTION_BATCH_SIZE - 1
 

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from bullet_sim.physics.body_joints import BodyJoints
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 
 MOST_DAMPING = 0.5  # of inertia / step: half the velocity is lost in a step
 MOST_STIFFNESS = 0.1  # of inertia / step^2: an oscillation takes at least 20 steps

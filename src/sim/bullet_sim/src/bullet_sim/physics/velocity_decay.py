@@ -6,7 +6,7 @@ The engine's own damping is the same for all links of a body and grows with the 
 import math
 
 from bullet_sim.physics.body_links import BodyLinks
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 from bullet_sim.pose import Vector3, conjugate, rotate
 
 SLOWEST = 0.01  # m/s and rad/s below which nothing is lost: ODE's default thresholds

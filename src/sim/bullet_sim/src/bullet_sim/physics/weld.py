@@ -1,7 +1,7 @@
 """Welds made while the world runs: between two links, or of a link to the world."""
 
 from bullet_sim.physics.body import Body, fasten
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 from bullet_sim.pose import Pose
 
 WORLD_BODY = -1  # PyBullet's number for no body

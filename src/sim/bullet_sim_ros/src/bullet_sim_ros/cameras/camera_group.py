@@ -65,7 +65,7 @@ class CameraGroup:
         """Runs in the loop; the drawing thread renders and publishes the images."""
         pictures = any(camera.pictures_wanted() for camera in self._cameras)
         if pictures:
-            self._context.services.lockstep.expect(self._context)
+            self._context.host.lockstep.expect(self._context)
         states = [camera.camera.capture() for camera in self._cameras]
 
         def publish() -> None:
@@ -80,25 +80,25 @@ class CameraGroup:
         An exception of the previous job is raised here. In lockstep the world waits for the image
         anyway, so the job runs at once in the loop.
         """
-        services = self._context.services
-        if services.lockstep.topics:
-            services.drawing.settle()  # the renderer does one thing at a time
+        host = self._context.host
+        if host.lockstep.topics:
+            host.drawing.settle()  # the renderer does one thing at a time
             job()
-            services.drawing.settle()
+            host.drawing.settle()
             return
         if self._drawn is not None and not self._drawn.done():
-            with services.world.profiler.measure("wait"):
+            with host.world.profiler.measure("wait"):
                 self._drawn.exception()
         if self._drawn is not None:
             self._drawn.result()
-        self._drawn = services.drawing.submit(job)
+        self._drawn = host.drawing.submit(job)
 
     def _close(self) -> None:
         """Wait for the last image, before the topics that publish it are closed."""
         if self._drawn is not None:
             self._drawn.exception()
         self._drawn = None
-        self._context.services.drawing.settle_rest()
+        self._context.host.drawing.settle_rest()
 
 
 def pictures_rate(sensor_hz: float, plugin_hz: float) -> float:

@@ -30,7 +30,7 @@ class CameraPublisher:
 
     def __init__(self, context: PluginContext, number: int = 0, suffix: str = "",
                  baseline: float | None = None):
-        drawing = context.services.drawing
+        drawing = context.host.drawing
         self.camera = Camera(context.world, context.link, context.sensor, drawing.renderer(),
                              number, context.parameters.flag("borderCrop", True))
         context.on_close(drawing.trim)
@@ -105,9 +105,9 @@ def _log_frame_time(context: PluginContext, camera: Camera, topic: str) -> None:
         view = state.view
         frame_ms = min(took[1:]) * 1e3  # the first one also loads the scene
         line = f"camera {topic} ({view.width}x{view.height}): {frame_ms:.1f} ms a frame"
-        context.services.mailbox.post(lambda: rospy.loginfo("%s", line))
+        context.host.mailbox.post(lambda: rospy.loginfo("%s", line))
 
-    context.services.drawing.submit(measure)
+    context.host.drawing.submit(measure)
 
 
 FORMATS = ("jpeg", "png")

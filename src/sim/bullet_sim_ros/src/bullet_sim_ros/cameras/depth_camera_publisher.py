@@ -60,7 +60,7 @@ class DepthCameraPublisher(CameraPublisher):
             reading = self.camera.render(state, depth or points)
             self.publish_picture(reading)
             if reading.depth is not None:
-                before, self._rest = self._rest, self._context.services.drawing.hand_on(
+                before, self._rest = self._rest, self._context.host.drawing.hand_on(
                     lambda: self._publish_depth(reading, state.view.focal_length_px, depth, points))
                 if before is not None:
                     before.result()  # already done: hand_on has waited for it

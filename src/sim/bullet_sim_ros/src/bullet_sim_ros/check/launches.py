@@ -18,7 +18,7 @@ import yaml
 from workspace_needs.tables import DEBIAN, Tables
 
 from bullet_sim.errors import SimulationError, did_you_mean
-from bullet_sim.formats import Resources
+from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.xml_text import decoded, read_bytes
 from bullet_sim_ros.check.findings import ABSENT, PROBLEM, UNCHECKED, WORKS, Finding, problem
 from bullet_sim_ros.check.launch_files import (

@@ -7,8 +7,8 @@ from pathlib import Path
 from xml.etree.ElementTree import Element
 
 from bullet_sim.errors import FormatError, SimulationError
-from bullet_sim.formats import Resources, load_light, load_model, load_world
-from bullet_sim.formats.resources import DATA_FOLDER
+from bullet_sim.formats.loading import load_light, load_model, load_world
+from bullet_sim.formats.resources import DATA_FOLDER, Resources
 from bullet_sim.formats.sdf.include import model_file
 from bullet_sim.formats.xml_text import decoded, read_bytes
 from bullet_sim.formats.xml_values import child_text, parse_xml, read_xml_file

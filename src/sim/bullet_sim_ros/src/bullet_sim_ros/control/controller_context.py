@@ -39,7 +39,7 @@ class ControllerContext:
         self.robot = robot  # the URDF's facts
         self.claims: dict[str, CommandHandle] = {}  # by joint name
         self.tasks: list[tuple[Rate, Callable[[], None]]] = []
-        self.services, self.mailbox = context.services, context.services.mailbox
+        self.host, self.mailbox = context.host, context.host.mailbox
         self._hardware = hardware
         self._context = context
 

@@ -47,7 +47,7 @@ def with_urdf(
     def poll() -> None:
         while not closed.wait(POLL) and not rospy.is_shutdown():
             if params.find_upwards(namespace, name):
-                context.services.mailbox.post(look)
+                context.host.mailbox.post(look)
                 return
 
     threading.Thread(target=poll, name="urdf", daemon=True).start()

@@ -3,6 +3,7 @@
 import logging
 import math
 from collections.abc import Callable
+from typing import TypeVar
 
 import rospy
 from rosgraph.names import is_legal_name
@@ -12,22 +13,28 @@ from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim_ros import convert
 from bullet_sim_ros.errors import PluginError, format_error
+from bullet_sim_ros.plugin_host.host import PluginHost
 from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
-from bullet_sim_ros.plugin_host.scope import PluginScope
-from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
 from bullet_sim_ros.scheduler import PeriodicTask, always
 
 log = logging.getLogger("bullet_sim.plugins")
 
+Part = TypeVar("Part")  # a model, sensor, visual or link
 
-class PluginContext(PluginScope):
-    """One plugin's view of the simulation. Made and used in the loop's thread."""
 
-    def __init__(self, services: SharedByPlugins, model: Model | None,
+class PluginContext:
+    """One plugin's view of the simulation. Made and used in the loop's thread.
+
+    PluginError if a part around it is asked for (`model`, `sensor`, ...) that it is not in.
+    """
+
+    def __init__(self, host: PluginHost, model: Model | None,
                  description: PluginDescription, sensor: SensorDescription | None = None,
                  link: Link | None = None, visual: Visual | None = None):
-        super().__init__(services.world, model, description, sensor, link, visual)
-        self.services = services
+        self.host = host
+        self.world = host.world
+        self.description = description
+        self._model, self._sensor, self._link, self._visual = model, sensor, link, visual
         self.parameters = PluginParameters(model.name if model else "(world)", description)
         self._closers: list[Callable[[], None]] = []
         self._resets: list[Callable[[], None]] = []
@@ -39,6 +46,52 @@ class PluginContext(PluginScope):
         """How often the plugin's last periodic task has run."""
         return self._task.count if self._task else 0
 
+    # --- where it is
+
+    @property
+    def model(self) -> Model:
+        """The model that the plugin is in; PluginError if it is in the world."""
+        return _inside(self._model, "a <model>, not in the world")
+
+    @property
+    def kind(self) -> str:
+        """What the plugin is in: `visual`, `sensor`, `model` or `world`."""
+        if self._visual is not None:
+            return "visual"
+        if self._sensor is not None:
+            return "sensor"
+        return "world" if self._model is None else "model"
+
+    @property
+    def visual(self) -> Visual:
+        """The visual that the plugin is in; PluginError if it is in none."""
+        return _inside(self._visual, "a <visual>")
+
+    @property
+    def sensor(self) -> SensorDescription:
+        """The sensor that the plugin is in; PluginError if it is in none."""
+        return _inside(self._sensor, "a <sensor>, not in the model")
+
+    @property
+    def link(self) -> Link:
+        """The link that the sensor or visual is on; PluginError if the plugin is in none."""
+        return _inside(self._link, "a <sensor>, not in the model")
+
+    @property
+    def sensor_name(self) -> str:
+        """`model::link::sensor`."""
+        return f"{self.link.scoped_name}::{self.sensor.name}"
+
+    def describe(self) -> str:
+        """Model, sensor or visual, and plugin, for log lines."""
+        sensor = f" sensor {self._sensor.name}:" if self._sensor else ""
+        if self._visual is not None:
+            sensor = f" visual {self._visual.name}:"
+        name = self.description.name or "(no name)"
+        place = f"model {self._model.name}:" if self._model else \
+            f"world {self.world.description.name}:"
+        return f"{place}{sensor} plugin {name} ({self.description.filename})"
+
     # --- when the loop calls
 
     def every(self, rate_hz: float, action: Callable[[], None],
@@ -48,7 +101,7 @@ class PluginContext(PluginScope):
         `whole_steps` is for plugins that count the period from their last call (see `TickRate`). A
         rate below zero means every step, too (gazebo_ros_diff_drive.cpp, Load).
         """
-        scheduler = self.services.scheduler
+        scheduler = self.host.scheduler
         self._task = task = scheduler.add(
             max(rate_hz, 0.0), self._guarded(action), wanted, whole_steps)
         self._closers.append(lambda: scheduler.remove(task))
@@ -56,7 +109,7 @@ class PluginContext(PluginScope):
     def change_rate(self, rate_hz: float) -> None:
         """Run the task of the last `every` at another rate from now on."""
         if self._task is not None and not self.closed:
-            self.services.scheduler.change_rate(self._task, rate_hz)
+            self.host.scheduler.change_rate(self._task, rate_hz)
 
     def every_reading(self, rate_hz: float, action: Callable[[], None],
                       wanted: Callable[[], bool] = always) -> None:
@@ -116,15 +169,15 @@ class PluginContext(PluginScope):
 
         PluginError if the topic's name is illegal.
         """
-        lockstep = self.services.lockstep
+        lockstep = self.host.lockstep
         resolved = rospy.resolve_name(_legal(topic))
         answers = resolved in lockstep.topics
 
         def receive(message) -> None:
-            self.services.senders.note(resolved, message)
+            self.host.senders.note(resolved, message)
             function = take(message)
             if function is not None:
-                self.services.mailbox.post(function)
+                self.host.mailbox.post(function)
             if answers:
                 lockstep.receive(resolved, self)
 
@@ -150,7 +203,7 @@ class PluginContext(PluginScope):
         PluginError if the name is illegal.
         """
         def answer(request):
-            self.services.mailbox.announce(rospy.resolve_name(name), request)
+            self.host.mailbox.announce(rospy.resolve_name(name), request)
             return handler(request)
 
         try:
@@ -167,7 +220,7 @@ class PluginContext(PluginScope):
     def close(self) -> None:
         """End all topics and services of the plugin."""
         self.closed = True
-        self.services.lockstep.cancel(self)
+        self.host.lockstep.cancel(self)
         while self._closers:
             self._closers.pop()()
         # These are reference cycles: the plugin's arrays would wait for the garbage collector.
@@ -179,3 +232,9 @@ def _legal(name: str) -> str:
     if not is_legal_name(name):
         raise PluginError(f"{name!r} is not a legal topic name: letters, digits, _ and / only")
     return name
+
+
+def _inside(part: Part | None, what: str) -> Part:
+    if part is None:
+        raise PluginError(f"it belongs inside {what}")
+    return part

@@ -24,7 +24,7 @@ class OdometryOutput:
                  transform: bool = True, flat: bool = False,
                  pose_covariance: Sequence[float] = convert.DRIVE_COVARIANCE,
                  twist_covariance: Sequence[float] | None = None, queue_size: int = 1):
-        self._services = context.services
+        self._host = context.host
         self._odom_frame, self._base_frame, self._flat = odom_frame, base_frame, flat
         self.pose_covariance, self.twist_covariance = pose_covariance, twist_covariance
         self._topic = context.advertise(topic, Odometry, queue_size=queue_size)
@@ -34,11 +34,11 @@ class OdometryOutput:
         """Set whether the transform is sent."""
         self._transform = wanted
         if wanted:
-            self._services.announce_transforms()
+            self._host.announce_transforms()
 
     def wanted(self) -> bool:
         """Whether anybody listens."""
-        return bool(self._topic.get_num_connections()) or self._services.transforms_wanted()
+        return bool(self._topic.get_num_connections()) or self._host.transforms_wanted()
 
     def publish(self, reading: OdometryReading, others: Sequence[TransformStamped] = ()) -> None:
         """Publish on the topic, and send the transform together with `others`."""
@@ -48,8 +48,8 @@ class OdometryOutput:
         if self._transform:
             transforms.insert(0, convert.transform_to_msg(
                 reading.pose, reading.time, self._odom_frame, self._base_frame))
-        if transforms and self._services.transforms_wanted():
-            self._services.send_transforms(transforms)
+        if transforms and self._host.transforms_wanted():
+            self._host.send_transforms(transforms)
 
     def _message(self, reading: OdometryReading) -> Odometry:
         msg = convert.odometry_to_msg(reading, self._odom_frame, self._base_frame)

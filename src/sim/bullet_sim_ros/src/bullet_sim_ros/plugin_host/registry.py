@@ -11,7 +11,7 @@ from bullet_sim.model import Model
 from bullet_sim_ros.errors import format_error
 from bullet_sim_ros.interface import Row, read_interface, rows_by_name
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.shared_by_plugins import SharedByPlugins
+from bullet_sim_ros.plugin_host.host import PluginHost
 from bullet_sim_ros.plugin_host.unknown import warn_of_unknown
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -33,27 +33,27 @@ def plugin(*filenames: str) -> Callable[[type], type]:
     return register
 
 
-def load_plugins(services: SharedByPlugins, model: Model) -> list[PluginContext]:
+def load_plugins(host: PluginHost, model: Model) -> list[PluginContext]:
     """All plugins of a model, its sensors and visuals; one that fails is one error line."""
     contexts = [
-        PluginContext(services, model, description) for description in model.description.plugins
+        PluginContext(host, model, description) for description in model.description.plugins
     ]
     for link in model.links.values():
         for sensor in link.description.sensors:
             warn_of_sensor(model.name, sensor)
             contexts += [
-                PluginContext(services, model, made, sensor, link) for made in sensor.plugins
+                PluginContext(host, model, made, sensor, link) for made in sensor.plugins
             ]
         for visual in link.description.visuals:
-            contexts += [PluginContext(services, model, made, link=link, visual=visual)
+            contexts += [PluginContext(host, model, made, link=link, visual=visual)
                          for made in visual.plugins]
     return [context for context in contexts if _load(context)]
 
 
-def load_world_plugins(services: SharedByPlugins) -> list[PluginContext]:
+def load_world_plugins(host: PluginHost) -> list[PluginContext]:
     """The plugins of the `<world>` itself."""
-    contexts = [PluginContext(services, None, description)
-                for description in services.world.description.plugins]
+    contexts = [PluginContext(host, None, description)
+                for description in host.world.description.plugins]
     return [context for context in contexts if _load(context)]
 
 

@@ -77,7 +77,7 @@ class SensorPlugin(ABC):
     def _publish(self) -> None:
         message = self.stamped(self.measure())
         if self._main is not None:
-            self.context.services.lockstep.expect(self.context, self._main.resolved_name)
+            self.context.host.lockstep.expect(self.context, self._main.resolved_name)
             self._main.publish(message)
 
 

@@ -42,9 +42,9 @@ MATTERS = {
 def warn_of_unknown(context: PluginContext, filename: str, known: Iterable[str]) -> None:
     """One warning for each file name and model (or world)."""
     place = "" if context.kind == "world" else context.model.name
-    if (place, filename) in context.services.warned:
+    if (place, filename) in context.host.warned:
         return
-    context.services.warned.add((place, filename))
+    context.host.warned.add((place, filename))
     log.warning("%s is not known here and left out; %s%s", context.describe(),
                 consequence(context, filename), did_you_mean(filename, known, 0.85))
 

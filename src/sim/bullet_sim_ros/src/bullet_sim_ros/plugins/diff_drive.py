@@ -46,7 +46,7 @@ class DiffDrivePlugin:
         odom_tf = p.flag("publishOdomTF", True)
         self._publish_wheel_tf = p.flag("publishWheelTF", False)
         if self._publish_tf and self._publish_wheel_tf:
-            context.services.announce_transforms()
+            context.host.announce_transforms()
         self._prefix = params.tf_prefix(namespace)
         topic = p.text("commandTopic", "cmd_vel")
         log.info("%s: Try to subscribe to %s", p.label, topic)

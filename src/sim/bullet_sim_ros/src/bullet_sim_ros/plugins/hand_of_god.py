@@ -29,7 +29,7 @@ class HandOfGodPlugin:
         self._desired, self._actual = f"{frame}_desired", f"{frame}_actual"
         self._hand = SpringDamper(context.world, self._link, stiffness, angular)
         self._frames = tf2_ros.BufferCore(rospy.Duration(10))
-        context.services.announce_transforms()
+        context.host.announce_transforms()
         context.subscribe("/tf", TFMessage, self._take, queue_size=100)
         context.subscribe("/tf_static", TFMessage, self._take_static, queue_size=100)
         self._hand.update(None)  # for the first step
@@ -55,7 +55,7 @@ class HandOfGodPlugin:
     def _pull(self) -> None:
         wanted = self._wanted()
         self._hand.update(wanted)
-        services = self._context.services
-        if wanted is not None and services.transforms_wanted():
-            services.send_transforms([convert.transform_to_msg(
+        host = self._context.host
+        if wanted is not None and host.transforms_wanted():
+            host.send_transforms([convert.transform_to_msg(
                 self._link.pose, self._context.world.time, WORLD, self._actual)])

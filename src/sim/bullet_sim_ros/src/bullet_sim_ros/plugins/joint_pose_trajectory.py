@@ -58,7 +58,7 @@ class JointPoseTrajectoryPlugin:
             except SimulationError as error:
                 return SetJointTrajectoryResponse(False, format_error(error))
             return SetJointTrajectoryResponse(True, "SetJointTrajectory: trajectory set")
-        return self._context.services.mailbox.call(play)
+        return self._context.host.mailbox.call(play)
 
     def _play(self, msg: JointTrajectory, model: Model | None, pose=None) -> None:
         held = self._held(msg.header.frame_id)

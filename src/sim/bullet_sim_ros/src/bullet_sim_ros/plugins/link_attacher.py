@@ -36,7 +36,7 @@ class LinkAttacherPlugin:
             ends = (request.model_name_1, request.link_name_1,
                     request.model_name_2, request.link_name_2)
             try:
-                return AttachResponse(self._context.services.mailbox.call(lambda: action(ends)))
+                return AttachResponse(self._context.host.mailbox.call(lambda: action(ends)))
             except SimulationError as error:
                 log.error("%s: cannot %s: %s", self._context.describe(), name, format_error(error))
                 return AttachResponse(False)

@@ -78,7 +78,7 @@ class RosControlPlugin:
         context, namespace = self._context, self._namespace
 
         def open_context(name: str) -> ControllerContext:
-            own = PluginContext(context.services, context.model, context.description)
+            own = PluginContext(context.host, context.model, context.description)
             return ControllerContext(own, name, namespace, self._hardware, robot)
 
         self._manager = ControllerManager(open_context, rospy.is_shutdown)

@@ -20,7 +20,7 @@ class VacuumGripperPlugin:
                                                p.number("maxDistance", 0.05),
                                                p.number("minDistance", 0.01)))
         self._on = self._held = False
-        self._mailbox = context.services.mailbox
+        self._mailbox = context.host.mailbox
         self._topic = context.advertise(names.join(namespace, p.required("topicName")), Bool,
                                         queue_size=1)
         context.serve(names.join(namespace, "on"), Empty, lambda _request: self._switch(True))

@@ -6,7 +6,7 @@ setLinkState and so on.
 
 import rospy
 
-from bullet_sim.formats import Resources
+from bullet_sim.formats.resources import Resources
 from bullet_sim_ros.services import forces, joints, lights, links, physics, states, worlds
 from bullet_sim_ros.services.answers import offer_registered
 from bullet_sim_ros.services.models import offer_model_services

@@ -9,7 +9,8 @@ from gazebo_msgs.srv import DeleteModel, SpawnModel
 
 from bullet_sim.description import ModelDescription, PluginDescription
 from bullet_sim.errors import FormatError
-from bullet_sim.formats import Resources, load_light, load_model
+from bullet_sim.formats.loading import load_light, load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.pose import IDENTITY
 from bullet_sim_ros import names
 from bullet_sim_ros.services.answers import CallFails, ServiceError, done, offer

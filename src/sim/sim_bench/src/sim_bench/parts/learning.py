@@ -20,7 +20,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from bullet_sim.physics.quiet import STDOUT
+from bullet_sim.physics.engine import STDOUT
 from bullet_sim.world import World
 from run_session.failure import RunError
 from sim_bench.course import Course, drive_of

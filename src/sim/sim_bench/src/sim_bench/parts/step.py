@@ -16,7 +16,7 @@ from collections.abc import Callable
 from functools import partial
 
 from bullet_sim.model import Model
-from bullet_sim.physics.quiet import pybullet
+from bullet_sim.physics.engine import pybullet
 from run_session.failure import RunError
 from sim_bench.course import Course, drive_of
 from sim_bench.figures import Figure, figure, ratio

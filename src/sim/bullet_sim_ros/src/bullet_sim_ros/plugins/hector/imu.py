@@ -51,12 +51,12 @@ class HectorImuPlugin(common.HectorSensor):
         def setter(error: common.HectorError):
             def set_bias(request: SetBias._request_class) -> SetBiasResponse:
                 bias = np.array(convert.triple(request.bias))
-                context.services.mailbox.call(lambda: error.set_drift(bias))
+                context.host.mailbox.call(lambda: error.set_drift(bias))
                 return SetBiasResponse()
             return set_bias
 
         def calibrate(_request) -> EmptyResponse:
-            context.services.mailbox.call(lambda: self._rate.set_drift(np.zeros(3)))
+            context.host.mailbox.call(lambda: self._rate.set_drift(np.zeros(3)))
             return EmptyResponse()
 
         calibration = context.parameters.topic(f"{topic}/calibrate", "serviceName")

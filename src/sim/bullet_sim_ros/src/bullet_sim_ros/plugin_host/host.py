@@ -11,7 +11,7 @@ from bullet_sim_ros.scheduler import Scheduler
 from bullet_sim_ros.topic_faults import Senders
 
 
-class SharedByPlugins:
+class PluginHost:
     """Objects shared by all plugins of one simulation."""
 
     def __init__(self, world: World, mailbox: Mailbox, scheduler: Scheduler, drawing: DrawingThread,
