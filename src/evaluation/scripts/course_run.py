@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Drives a follower round the course without a screen, scores it and writes a report (--help)."""
+"""Every program of this package, by the name under which it is called (--help)."""
 
 from evaluation.start import start
 
 if __name__ == "__main__":
-    start("course_run.main", "CourseRun")
+    start()

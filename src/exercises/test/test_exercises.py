@@ -75,7 +75,7 @@ def test_make_test_does_not_judge_a_learners_unfinished_file():
 def test_the_lessons_page_has_the_task_the_command_and_hints(folder, page):
     text = (folder / page).read_text(encoding="utf-8")
     own = [name for name, each in EXERCISES.items() if each.start.is_relative_to(folder)]
-    typed = re.findall(r"^rosrun evaluation check_exercise (\w+)$", text, re.M)
+    typed = re.findall(r"^rosrun exercises check_exercise (\w+)$", text, re.M)
     assert sorted(typed) == sorted(own)
     for name in own:
         behind = text.partition(f"check_exercise {name}\n```\n")[2]

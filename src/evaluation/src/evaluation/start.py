@@ -5,15 +5,28 @@ from __future__ import annotations
 import importlib
 import signal
 import sys
+from pathlib import Path
 from typing import NoReturn
 
+# By the program's name: a module of this package, and its Trial or LiveDrive.
+PROGRAMS = {
+    "autorace": ("autorace.trial", "RaceTrial"), "avoid": ("avoid.trial", "AvoidTrial"),
+    "bench_lanes": ("lane.comparison", "LaneComparison"),
+    "course_run": ("course_run.main", "CourseRun"), "lane_trials": ("lane.trial", "LaneTrial"),
+    "localisation_trials": ("localisation.trial", "LocalisationTrial"),
+    "navigate": ("navigation.main", "NavigationRun"),
+    "navigation_trials": ("yards.trial", "YardTrial"),
+    "race_trials": ("race_trials.trial", "RaceTrial"), "track": ("tracking.run", "TrackRun"),
+    "track_trials": ("tracking.trial", "TrackTrial")}
 
-def start(module: str, program: str) -> NoReturn:
-    """Run class `program`, a Trial or LiveDrive in evaluation.MODULE, with the command line."""
+
+def start() -> NoReturn:
+    """Run the program whose name is that of the script, with the command line."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     runner = importlib.import_module("evaluation.trial.runner")
     live = importlib.import_module("evaluation.trial.live")
-    found = getattr(importlib.import_module(f"evaluation.{module}"), program)
+    module, name = PROGRAMS[Path(sys.argv[0]).stem]
+    found = getattr(importlib.import_module(f"evaluation.{module}"), name)
     if issubclass(found, live.LiveDrive):
         sys.exit(live.run_program_of(found, sys.argv[1:]))
     sys.exit(runner.run_trial(found(), sys.argv[1:]))

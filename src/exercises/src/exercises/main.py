@@ -60,7 +60,7 @@ def list_all(known: dict[str, Exercise]) -> int:
     width = max(map(len, known), default=0)
     for name, exercise in known.items():
         print(f"{name:{width}}  {exercise.title}  ({shown(exercise.start)})")
-    print("Check one: rosrun evaluation check_exercise NAME")
+    print("Check one: rosrun exercises check_exercise NAME")
     return PASSED
 
 
