@@ -41,6 +41,30 @@ material "Derived One" : Base
 }
 """
 TEXTURED = "material {} {{ technique {{ pass {{ texture_unit {{ texture {} }} }} }} }}"
+GREY = (0.5, 0.5, 0.5)
+ORANGE = (1, 0.5088, 0.0468)
+COLOURS = {
+    "Grey": (0.7, 0.7, 0.7), "DarkGrey": (0.175, 0.175, 0.175), "White": (1, 1, 1),
+    "FlatBlack": (0.1, 0.1, 0.1), "Black": (0, 0, 0), "Red": (1, 0, 0),
+    "RedBright": (0.87, 0.26, 0.07), "Green": (0, 1, 0), "Blue": (0, 0, 1), "SkyBlue": (0, 0, 1),
+    "Yellow": (1, 1, 0), "ZincYellow": (0.9725, 0.9529, 0.2078), "DarkYellow": (0.7, 0.7, 0),
+    "Purple": (1, 0, 1), "Turquoise": (0, 1, 1), "Orange": ORANGE, "Indigo": (0.33, 0, 0.5),
+    "Gold": (0.8, 0.64869, 0.120759), "Pioneer2Body": (0.681, 0.0009, 0.0009),
+    "JointAnchor": (1, 1, 1), "LightBlueLaser": (0.5, 0.5, 1, 0.4), "BlueLaser": (0, 0, 1, 0.4),
+    "RedGlow": (1, 0, 0), "GreenGlow": (0, 1, 0), "BlueGlow": (0, 0, 1), "YellowGlow": (1, 1, 0),
+    "PurpleGlow": (1, 0, 1), "TurquoiseGlow": (0, 1, 1), "WhiteGlow": (1, 1, 1),
+    "RedTransparent": (1, 0, 0, 0.5), "GreenTransparent": (0, 1, 0, 0.5),
+    "BlueTransparent": (0, 0, 1, 0.5), "YellowTransparent": (1, 1, 0, 0.5),
+    "GreyTransparent": (*GREY, 0.5), "RedTransparentOverlay": (1, 0, 0, 0.5),
+    "GreenTransparentOverlay": (0, 1, 0, 0.5), "BlueTransparentOverlay": (0, 0, 1, 0.5),
+    "OrangeTransparentOverlay": (*ORANGE, 0.8),
+    "DarkOrangeTransparentOverlay": (0.6, 0.305, 0.028, 0.8),
+    "DarkMagentaTransparent": (0.6, 0, 0.6, 0.5), "OrangeTransparent": (1, 0.44, 0, 0.4),
+    "LightOn": (0, 1, 0), "LightOff": (1, 0, 0),
+}
+PICTURED = """WoodFloor CeilingTiled PaintedWall WoodPallet Wood Bricks WindowFrame Road Residential
+    Tertiary Pedestrian Footway Motorway Lanes_6 Trunk Lanes_4 Primary Lanes_2 Secondary Lane_1
+    Steps PioneerBody CoM CloudySky GreyGradientSky""".split()
 
 
 @pytest.mark.parametrize("name", sorted(named_materials()))
@@ -159,7 +183,30 @@ def test_colours_win_over_the_script():
     assert (material.ambient, material.diffuse) == ((0, 0, 1, 1), (1, 0, 0, 1))
 
 
+@pytest.mark.parametrize("name", COLOURS)
+def test_plain_materials_by_name(name):
+    # conforms: Gazebo/* materials, Gazebo/* materials/plain colours
+    material = visual_with(f"<script><name>Gazebo/{name}</name></script>")
+    assert material.diffuse == pytest.approx((*COLOURS[name], 1)[:4])
+    assert (sum(material.emissive[:3]) > 0) == name.endswith(("Glow", "LightOn", "LightOff"))
+    assert material.lighting == ("Overlay" not in name and name != "JointAnchor")
+
+
+@pytest.mark.parametrize("name", PICTURED)
+def test_pictured_materials_have_a_plain_colour(name, caplog):
+    # conforms: Gazebo/* materials/textures
+    assert visual_with(f"<script><name>Gazebo/{name}</name></script>").diffuse[3] == 1
+    assert not caplog.records
+
+
+def test_no_material_is_missed():
+    # conforms: Gazebo/* materials
+    of_gazebo = {name for name in named_materials() if name.startswith("Gazebo/")}
+    assert of_gazebo == {f"Gazebo/{name}" for name in [*COLOURS, *PICTURED]}
+
+
 def test_unknown_name_is_one_warning_and_the_default(caplog):
+    # conforms: Gazebo/* materials/unknown names
     assert visual_with("<script><name>Gazebo/Gren</name></script>") is None
     assert len(caplog.records) == 1
     assert "material 'Gazebo/Gren' not found" in caplog.text

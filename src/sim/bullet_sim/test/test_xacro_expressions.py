@@ -6,8 +6,7 @@ from xml.sax.saxutils import quoteattr
 import pytest
 
 from bullet_sim.errors import FormatError
-from bullet_sim.formats.xacro.bounds import run_bounded
-from bullet_sim.formats.xacro.files import expand
+from bullet_sim.formats.xacro.files import expand, expand_file
 
 
 @pytest.fixture
@@ -43,15 +42,31 @@ def value(tmp_path):
     ("${size.items().__len__ if False else len(size.items())}", None),
     ("$(eval 1 + len('abc'))", "4"),
     ("${xacro.tokenize('a b')[1]}", "b"),
+    ("${1 / 2}", "0.5"),
+    ("a${1}b", "a1b"),
+    ("${python.abs(-1)}", "1"),
+    ("${xacro.arg('n')}", "3"),
 ])
 def test_what_robots_compute(value, text, expected):
-    properties = ('<xacro:property name="size" '
+    # conforms: xacro expressions, xacro expressions/arithmetic, xacro expressions/math
+    # conforms: xacro expressions/lists and dicts, xacro expressions/python.*
+    # conforms: xacro expressions/xacro.arg
+    properties = ('<xacro:arg name="n" default="3"/><xacro:property name="size" '
                   'value="${xacro.dotify(dict(wheel=dict(radius=0.5, count=4)))}"/>')
     if expected is None:
         with pytest.raises(FormatError, match="invalid name"):
             value(text, properties)
     else:
         assert value(text, properties) == expected
+
+
+@pytest.mark.parametrize("call", ["load_yaml", "xacro.load_yaml"])
+def test_yaml(value, tmp_path, call):
+    # conforms: xacro expressions/load_yaml, xacro expressions/xacro.load_yaml
+    (tmp_path / "c.yaml").write_text("a: {b: [1, 2.5]}\nturn: !degrees 180\n")
+    before = f"""<xacro:property name="c" value="${{{call}('c.yaml')}}"/>"""
+    assert value("${c['a']['b'][1]} ${c.a.b[0]} ${round(c.turn, 2)}", before) == "2.5 1 3.14"
+    assert str(tmp_path / "c.yaml") in expand_file(tmp_path / "robot.xacro").files
 
 
 REACH = "__class__.__base__.__subclasses__()"
@@ -92,11 +107,3 @@ def test_a_list_comprehension_reaches_no_system_call(value, tmp_path):
         value("${[c.__init__.__globals__['system']('touch " + str(made) + f"') for c in ().{REACH} "
               "if c.__name__ == '_wrap_close']}")
     assert not made.exists()
-
-
-def test_a_bounded_process_may_bound_another_after_it_has_grown():
-    def grow_and_bound() -> int:
-        grown = bytearray(1 << 26)
-        return run_bounded(lambda: len(grown) >> 24, "inner")
-
-    assert run_bounded(grow_and_bound, "outer") == 4
