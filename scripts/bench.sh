@@ -8,4 +8,4 @@ failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" --learning || exit 2
 enter_workspace
-exec python3 "$root/src/sim/sim_bench/scripts/bench.py" "$@"
+exec python3 "$root/src/sim_bench/scripts/bench.py" "$@"

@@ -21,9 +21,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "src/workspace_n
 from workspace_needs.tables import Tables
 from workspace_needs.workspace import hide
 
-OUR_FOLDERS = ("car_control", "compat", "evaluation", "exercises", "interfaces",
+OUR_FOLDERS = ("car_control", "compat", "driving_courses", "evaluation", "exercises", "interfaces",
                "learning_topic", "lessons", "marking", "navigation", "racecar_description",
-               "run_session", "sim", "trial_worlds", "workspace_needs")
+               "run_session", "sim", "sim_bench", "trial_worlds", "workspace_needs")
 MARKER = "CATKIN_IGNORE"
 MARK = "made by the build: a package of this name elsewhere in src/ is built instead\n"
 

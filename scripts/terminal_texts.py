@@ -25,10 +25,10 @@ KEPT = LOCALES / "kept.txt"  # upstream's sentences and texts that no terminal s
 LANGUAGE = "zh_CN"
 # Programs for those who work on this repository, which print English.
 INSTRUMENTS = re.compile(
-    r"src/sim/sim_bench/|src/compat/terminal_language/|src/trial_worlds/"
+    r"src/sim_bench/|src/compat/terminal_language/|src/trial_worlds/"
     r"|src/.*/(training|world_maker|course_maker|making|test)/"
     r"|src/.*/(setup|conftest|(make|draw|train)_\w+)\.py|src/sim/bullet_sim/(scripts|examples)/"
-    r"|src/sim/driving_courses/examples/|src/evaluation/src/evaluation/\w+/trial\.py")
+    r"|src/driving_courses/examples/|src/evaluation/src/evaluation/\w+/trial\.py")
 # Parts of the page's server, whose texts only the page shows.
 PAGE = re.compile(
     r"src/sim/sim_viewer/src/sim_viewer/"

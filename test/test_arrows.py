@@ -12,6 +12,7 @@ import yaml
 
 ROOT = Path(__file__).resolve().parent.parent
 RULES = yaml.safe_load((Path(__file__).parent / "arrows.yaml").read_text(encoding="utf-8"))
+ROOMS: list[str] = RULES.pop("rooms")
 ROS = re.compile(
     r"ros|ros[a-z]+|\w+_(msgs|srvs)|tf|tf2\w*|cv_bridge|genpy|genmsg|catkin\w*|message_filters"
     r"|actionlib\w*|dynamic_reconfigure|topic_tools|image_geometry|laser_geometry|turtlesim"
@@ -108,6 +109,74 @@ def test_imports_follow_the_arrows() -> None:
     for path in python_files():
         broken += broken_arrows(str(path.relative_to(ROOT)), path.read_text(encoding="utf-8"))
     assert not broken, "\n" + "\n".join(broken)
+
+
+def test_each_arrow_has_a_user() -> None:
+    """No rule allows what no file of its folder does."""
+    used: dict[str, set[str]] = {}
+    for path in python_files():
+        folder = rule_folder(str(path.relative_to(ROOT)))
+        names = {name for _, name in imported(path.read_text(encoding="utf-8"))}
+        used.setdefault(folder or "", set()).update(names)
+    assert not unused_arrows(RULES, used)
+
+
+def unused_arrows(rules: dict[str, dict], used: dict[str, set[str]]) -> list[str]:
+    """`used`: modules that the files of each rule's folder import."""
+    found = []
+    for folder, rule in rules.items():
+        names = used.get(folder)
+        if names is None:
+            found.append(f"{folder}: no Python file falls under this rule")
+            continue
+        found += [f"{folder}: nobody imports {name}"
+                  for name in (*rule["ours"], *rule.get("only", ())) if name not in names]
+        if rule["ros"] and not any(ROS.fullmatch(name) for name in names):
+            found.append(f"{folder}: nobody imports ROS")
+    return found
+
+
+def test_the_check_for_unused_arrows_itself() -> None:
+    rules = {"src/a": {"ours": ["b"], "ros": True, "only": ["numpy"]},
+             "src/b": {"ours": [], "ros": False}}
+    assert len(unused_arrows(rules, {"src/a": {"os"}})) == 4
+    assert not unused_arrows(rules, {"src/a": {"b", "rospy", "numpy"}, "src/b": set()})
+
+
+def rooms_by_module() -> dict[str, str]:
+    """The folder below src/ of each of our modules and message packages."""
+    rooms = {}
+    for manifest in ROOT.glob("src/**/package.xml"):
+        package, room = manifest.parent, manifest.relative_to(ROOT / "src").parts[0]
+        rooms.update({init.parent.name: room for init in package.glob("src/*/__init__.py")})
+        if any((package / kind).is_dir() for kind in ("msg", "srv", "action")):
+            rooms[package.name] = room
+    return rooms
+
+
+def upward_arrows(path: str, source: str, rooms: dict[str, str], order: list[str]) -> list[str]:
+    """Imports of a file below src/ from a room that does not come before its own."""
+    own = path.split("/")[1]
+    return [f"{path}:{line}: src/{own} imports {module} of src/{rooms[module]}, which is not below"
+            for line, module in imported(source)
+            if rooms.get(module, own) != own and rooms[module] not in order[:order.index(own)]]
+
+
+def test_no_room_imports_from_one_above_it() -> None:
+    assert {path.relative_to(ROOT / "src").parts[0] for path in python_files()} <= set(ROOMS)
+    rooms, found = rooms_by_module(), []
+    for path in python_files():
+        name = str(path.relative_to(ROOT))
+        found += upward_arrows(name, path.read_text(encoding="utf-8"), rooms, ROOMS)
+    assert not found, "\n" + "\n".join(found)
+
+
+def test_the_check_for_upward_arrows_itself() -> None:
+    rooms = rooms_by_module()
+    assert rooms["gazebo_msgs"] == "interfaces" and rooms["move_base"] == "navigation"
+    assert "xacro" not in rooms  # what bullet_sim imports is PyPI's
+    assert upward_arrows("src/sim/x.py", "import evaluation.lap", rooms, ROOMS)
+    assert not upward_arrows("src/evaluation/x.py", "import bullet_sim, cv2", rooms, ROOMS)
 
 
 def modules() -> dict[str, Path]:

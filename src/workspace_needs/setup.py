@@ -3,4 +3,5 @@
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 
-setup(**generate_distutils_setup(packages=["workspace_needs"], package_dir={"": "src"}))
+setup(**generate_distutils_setup(
+    packages=["workspace_needs", "workspace_needs.check"], package_dir={"": "src"}))

@@ -25,7 +25,7 @@ Change = Callable[[bytes, random.Random], bytes]
 
 def _mutants() -> object:
     """The mutations of XML that the simulator's own tests know."""
-    path = ROOT / "src/sim/bullet_sim_ros/test/mutants/mutations.py"
+    path = ROOT / "src/workspace_needs/test/malformed/mutations.py"
     spec = importlib.util.spec_from_file_location("mutations", path)
     module = importlib.util.module_from_spec(spec)
     sys.modules["mutations"] = module

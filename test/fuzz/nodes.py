@@ -20,7 +20,7 @@ from nav_msgs.msg import OccupancyGrid
 from target import ROOT, Target
 from tf2_msgs.msg import TFMessage
 
-from bullet_sim_ros.check.stand_ins import Graph, without_master
+from bullet_sim_ros.without_master import Graph, without_master
 from nav_nodes.messages import transform_message
 from nav_nodes.parameters import load_table, read_parameters
 

@@ -21,7 +21,7 @@ from sim_viewer.options import Options
 from sim_viewer.server import Server
 from target import Target
 
-from bullet_sim_ros.check.stand_ins import without_master
+from bullet_sim_ros.without_master import without_master
 
 registry.load_all()
 STARTING = ("record", "play")  # programs of their own

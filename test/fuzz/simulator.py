@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from messages import carried, spoil
 from target import ROOT, Target
 
-from bullet_sim_ros.check.stand_ins import without_master
 from bullet_sim_ros.params import NodeParameters
+from bullet_sim_ros.without_master import without_master
 
 ROBOT = "**/turtlebot3_burger/model.sdf"
 BOX = ("<sdf version='1.6'><model name='box'><link name='link'><pose>0 0 1 0 0 0</pose><collision "

@@ -1,4 +1,4 @@
-"""Packages that a terminal does not see, and the line at sourcing."""
+"""The line at sourcing, on packages that a learner's own hide."""
 
 import os
 import re
@@ -6,7 +6,6 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from workspace_needs.hidden import unsourced
 
 HOOK = Path(__file__).resolve().parents[1] / "env-hooks/52.workspace_needs.sh"
 
@@ -19,36 +18,6 @@ def built(folder: Path, *packages: str) -> Path:
         (folder / "src" / package).mkdir(parents=True)
         (folder / "src" / package / "package.xml").touch()
     return folder
-
-
-def test_a_built_workspace_around_here_or_in_the_home_has_it(tmp_path, monkeypatch):
-    home = built(tmp_path / "home/my_ws", "legs", "robots/wings").parent
-    monkeypatch.setattr(Path, "home", lambda: home)
-    monkeypatch.chdir(tmp_path)
-    said = f"; its workspace is not sourced: source {home}/my_ws/devel/setup.bash"
-    assert unsourced("legs") == unsourced("wings") == said
-    assert unsourced("fins") == ""
-    here = built(tmp_path / "work", "legs")
-    monkeypatch.chdir(here / "src/legs")
-    assert unsourced("legs").endswith(f"source {here}/devel/setup.bash")
-
-
-def test_folders_that_are_gone_or_somebody_elses_have_no_workspace(tmp_path, monkeypatch):
-    home, gone = built(tmp_path / "home/my_ws", "legs").parent, tmp_path / "gone"
-    (home / "a_private").mkdir()
-    gone.mkdir()
-    monkeypatch.setattr(Path, "home", lambda: home)
-    monkeypatch.chdir(gone)
-    gone.rmdir()
-    stat = os.stat
-
-    def refusing(path, *given, **options):
-        if "a_private/" in os.fspath(path):
-            raise PermissionError(13, "Permission denied", path)
-        return stat(path, *given, **options)
-
-    monkeypatch.setattr(os, "stat", refusing)
-    assert unsourced("legs").endswith(f"source {home}/my_ws/devel/setup.bash")
 
 
 @pytest.mark.parametrize("shell", [["bash", "--norc"], ["sh"]])

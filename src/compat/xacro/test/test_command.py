@@ -9,7 +9,7 @@ import pytest
 
 HERE = Path(__file__).resolve().parents[1]
 CORE = HERE.parents[1] / "sim/bullet_sim/src"
-NEEDS = HERE.parents[1] / "workspace_needs/src"
+ADAPTER = HERE.parents[1] / "sim/bullet_sim_ros/src"
 ROBOT = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="colour" default="red"/>
   <xacro:include filename="$(find wheels)/urdf/wheel.xacro"/>
@@ -35,7 +35,7 @@ def folder(tmp_path):
 def run(folder, *words, command=NAMES[0]):
     environment = os.environ | {
         "ROS_PACKAGE_PATH": str(folder),
-        "PYTHONPATH": f"{CORE}{os.pathsep}{NEEDS}{os.pathsep}{os.environ.get('PYTHONPATH', '')}",
+        "PYTHONPATH": f"{CORE}{os.pathsep}{ADAPTER}{os.pathsep}{os.environ.get('PYTHONPATH', '')}",
         "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
     }
     return subprocess.run([*command, *words], cwd=folder, env=environment, text=True,

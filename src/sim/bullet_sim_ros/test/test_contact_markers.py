@@ -9,8 +9,8 @@ from gazebo_msgs.msg import ContactsState, ContactState
 from geometry_msgs.msg import Vector3, Wrench
 from visualization_msgs.msg import Marker
 
-from bullet_sim_ros.check.stand_ins import without_master
 from bullet_sim_ros.contact_markers import LONGEST, to_markers
+from bullet_sim_ros.without_master import without_master
 
 PROGRAM = Path(__file__).resolve().parents[1] / "scripts/contact_markers"
 

@@ -4,9 +4,9 @@ import socket
 
 import pytest
 import rosgraph
+from workspace_needs.check.parameter_commands import output_of
 
 from bullet_sim_ros import launch_guard, only_simulator
-from bullet_sim_ros.check.parameter_commands import output_of
 
 ROSLAUNCH = ["/usr/bin/python3", "/usr/bin/roslaunch"]
 WORLD = '<include file="$(find gazebo_ros)/launch/empty_world.launch"/>'

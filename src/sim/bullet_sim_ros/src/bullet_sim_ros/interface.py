@@ -5,7 +5,6 @@ element of a format; its tags are what can be written inside. The README's table
 tests all read these files.
 """
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +12,6 @@ from typing import Any
 
 import rospkg
 import yaml
-from terminal_language.wanted import wanted_language
 
 WORKS, APPROXIMATED, ACCEPTED, ABSENT = STATUSES = ("works", "approximated", "accepted", "absent")
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml's is six times as fast
@@ -32,10 +30,6 @@ class Entry:
     status: str
     how: str = ""
     how_zh: str = ""
-
-    def told(self) -> str:
-        """`how` in the terminal's language."""
-        return self.how_zh if wanted_language(dict(os.environ)) else self.how
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from typing import NamedTuple
 from xml.etree.ElementTree import Element
 
 import rospkg
-from workspace_needs.hidden import unsourced
 
 from bullet_sim.errors import FormatError, ResourceNotFound
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.xml_values import child_text, read_xml_file
+from bullet_sim_ros.unsourced import unsourced
 
 log = logging.getLogger("bullet_sim.packages")
 

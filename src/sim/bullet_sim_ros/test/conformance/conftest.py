@@ -17,13 +17,13 @@ from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.model import Model
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.world import World
-from bullet_sim_ros.check.stand_ins import Graph, without_master
 from bullet_sim_ros.node import open_network
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.services.models import with_namespace
 from bullet_sim_ros.simulation import Simulation
+from bullet_sim_ros.without_master import Graph, without_master
 
 GROUND = """<sdf version="1.6"><world name="default">
   <physics type="ode"><max_step_size>0.001</max_step_size>

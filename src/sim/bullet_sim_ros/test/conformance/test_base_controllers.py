@@ -10,8 +10,8 @@ import pytest
 from geometry_msgs.msg import Twist, Vector3
 
 from bullet_sim.pose import Pose
-from bullet_sim_ros.check.stand_ins import Graph
 from bullet_sim_ros.control import mobile_base
+from bullet_sim_ros.without_master import Graph
 
 LIMIT = 60.0  # s, wall, for controllers to start
 COVARIANCE = [0.001, 0.001, 1e6, 1e6, 1e6, 0.03]

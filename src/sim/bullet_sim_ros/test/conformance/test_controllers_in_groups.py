@@ -7,7 +7,7 @@ import threading
 import pytest
 from std_msgs.msg import Float64, Float64MultiArray
 
-from bullet_sim_ros.check.stand_ins import Graph
+from bullet_sim_ros.without_master import Graph
 
 LIMIT = 60.0  # s, wall, for a controller to start
 INERTIAL = """<inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0"

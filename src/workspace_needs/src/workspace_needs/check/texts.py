@@ -1,0 +1,163 @@
+"""Checks robot and world texts: reads and spawns them as the simulator would, with its log."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+from bullet_sim.errors import FormatError, SimulationError
+from bullet_sim.formats.loading import load_light, load_model, load_world
+from bullet_sim.formats.resources import DATA_FOLDER, Resources
+from bullet_sim.formats.sdf.include import model_file
+from bullet_sim.formats.xml_text import decoded, read_bytes
+from bullet_sim.formats.xml_values import child_text, parse_xml, read_xml_file
+from bullet_sim_ros.interface import APPROXIMATED, WORKS, Row
+from workspace_needs.check.dry_run import LogLine, listening, try_model, try_world
+from workspace_needs.check.elements import Lookup
+from workspace_needs.check.findings import Finding, problem
+from workspace_needs.check.parameter_commands import expanded
+
+NEEDS_MASS = "an <inertial>"  # the end of the error for a robot without any
+
+
+class TextChecker:
+    """Checks robots and worlds, with the resources of this environment."""
+
+    def __init__(self, rows: dict[str, Row], resources: Resources):
+        self._rows = rows
+        self._resources = resources
+
+    def model_file(self, path: Path, arguments: dict[str, str], shown_only: bool = False
+                   ) -> list[Finding]:
+        """A .urdf, .xacro or .sdf file; xacro is expanded first.
+
+        `shown_only`: nobody asked to spawn it.
+        """
+        where = str(path)
+        try:
+            text = (expanded(path, arguments, self.find_package) if path.suffix == ".xacro"
+                    else _utf8(path))
+        except SimulationError as error:
+            return [problem(where, "robot", error)]
+        found = self.model_text(text, where)
+        if shown_only and found[0].how.endswith(NEEDS_MASS) and is_for_show(text):
+            how = "only to be shown: nothing in it has mass"
+            return [Finding(where, "robot", APPROXIMATED, how)]
+        return found
+
+    def with_resources(self, resources: Resources) -> TextChecker:
+        """A checker with other search paths."""
+        return TextChecker(self._rows, resources)
+
+    def find_package(self, name: str) -> str:
+        """The package's folder. ResourceNotFound if there is none."""
+        return str(self._resources.package_folder(name))
+
+    def model_text(self, text: str, where: str, parameters: Mapping[str, object] | None = None,
+                   namespace: str = "") -> list[Finding]:
+        """A robot or model, spawned into an empty world with its plugins.
+
+        `parameters` are those of the parameter server by full name; by default, the robot's text is
+        in /robot_description.
+        """
+        if parameters is None:
+            parameters = {"/robot_description": text}
+        with listening() as captured:
+            try:
+                # A quick search first, as parsing a large robot takes time.
+                light = "<light" in text and load_light(text, self._resources) is not None
+                if not light:
+                    description = load_model(text, self._resources, None)
+                    try_model(description, parameters, namespace)
+            except SimulationError as error:
+                return [problem(where, "robot", error)]
+        if light:
+            return [Finding(where, "light", WORKS), *self._details(text, where, None)]
+        links = f"{len(description.links)} links, {len(description.joints)} joints"
+        return [Finding(where, f"model {description.name} ({links})", WORKS),
+                *_not_failed(self._details(text, where, None), captured), *_logged(captured, where)]
+
+    def world_file(self, path: Path, parameters: Mapping[str, object] | None = None
+                   ) -> list[Finding]:
+        """A world with all that it includes."""
+        where = str(path)
+        with listening() as captured:
+            try:
+                text = decoded(read_bytes(path))
+                description = load_world(path, self._resources)
+                try_world(description, parameters or {})
+            except (SimulationError, OSError) as error:
+                return [problem(where, "world", error)]
+        name = f"world {description.name} ({len(description.models)} models)"
+        details = _not_failed(self._details(text, where, path.parent), captured)
+        return [Finding(where, name, WORKS), *details, *_logged(captured, where)]
+
+    def _details(self, text: str, where: str, folder: Path | None) -> list[Finding]:
+        """Findings about plugins and elements of the text in `folder`, and of included files."""
+        with listening():  # what the reader warns of was said when the text was loaded
+            root = _root(text)
+            if root is None:
+                return []
+            found = list(Lookup(self._rows, where).findings(root))
+            for uri, inner in included(root, folder, self._resources, set()):
+                found += Lookup(self._rows, f"{where}, included {uri}").findings(inner)
+        return found
+
+
+def _utf8(path: Path) -> str:
+    """The text, decoded as by roslaunch, which knows no other encoding."""
+    content = read_bytes(path)
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        raise FormatError(f"{path}, line {line}: this is not UTF-8, which roslaunch needs; save "
+                          "the file as UTF-8") from None
+
+
+def _logged(captured: list[LogLine], where: str) -> list[Finding]:
+    return [Finding(where, "it says", each.status, " ".join(each.line.split()))
+            for each in captured]
+
+
+def _not_failed(details: list[Finding], captured: list[LogLine]) -> list[Finding]:
+    """The findings without those of plugins that work by the table but were not loaded."""
+    return [found for found in details
+            if not any(f"{found.part} is not loaded" in each.line for each in captured)]
+
+
+def _root(text: str) -> Element | None:
+    try:
+        return parse_xml(text)
+    except FormatError:
+        return None
+
+
+def is_for_show(text: str) -> bool:
+    """Whether it is a URDF in which nothing has mass: RViz shows it, no simulator can move it."""
+    with listening():
+        root = _root(text)
+    return root is not None and root.tag == "robot" and root.find("link") is not None and (
+        root.find("link/inertial") is None)
+
+
+def included(root: Element, folder: Path | None, resources: Resources,
+             seen: set[Path]) -> Iterator[tuple[str, Element]]:
+    """URI and root element of each included file, at any depth, once.
+
+    Without those that come with the simulator, and those that cannot be read, which are errors
+    when the text is loaded.
+    """
+    for include in root.iter("include"):
+        uri = child_text(include, "uri")
+        try:
+            file = model_file(resources.resolve(uri, folder))
+            if file in seen or DATA_FOLDER in file.parents:
+                continue
+            seen.add(file)
+            inner = read_xml_file(file)
+        except SimulationError:
+            continue
+        yield uri, inner
+        yield from included(inner, file.parent, resources, seen)

@@ -1,0 +1,86 @@
+"""Checks a workspace: whether its packages build, and what is in them."""
+
+import os
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from workspace_needs.check.contents import Check, files_of
+from workspace_needs.check.findings import ABSENT, PROBLEM, SERIOUS, UNCHECKED, WORKS, Finding
+from workspace_needs.check.sources import program_findings
+from workspace_needs.verdicts import Verdict, judge
+from workspace_needs.workspace import WorkspaceError, source_folder
+
+LONGEST = 120.0  # s, wall, after which no further file is looked at
+
+
+def workspace_findings(path: Path, arguments: list[str], run_commands: bool) -> list[Finding]:
+    """Findings about each package below `path`, built or not; WorkspaceError if there is none.
+
+    Of what is in a package only that is listed which does not simply work.
+    """
+    source = source_folder(path)
+    try:
+        verdicts = judge(source)
+    except WorkspaceError as error:
+        return [Finding(f"workspace {path}", "build", PROBLEM, str(error))]
+    files = {verdict.name: [] if verdict.hides_ours else files_of(verdict.folder)
+             for verdict in verdicts}
+    number = sum(map(len, files.values()))
+    if number:
+        print(f"launch files, worlds, robots and YAML to look at: {number}; this takes at most "
+              f"{LONGEST / 60:g} minutes or so", file=sys.stderr, flush=True)
+    check = _open(verdicts, arguments, run_commands)
+    until = time.monotonic() + LONGEST
+    return [finding for verdict in verdicts
+            for finding in (*_of_package(verdict, path), *program_findings(verdict.folder),
+                            *_of_files(verdict, files[verdict.name], check, until))]
+
+
+def _open(verdicts: list[Verdict], arguments: list[str], run_commands: bool) -> Check:
+    """A checker that finds the workspace's packages as if it were built and sourced."""
+    found = [verdict for verdict in verdicts if not verdict.hides_ours]
+    places = [*(str(verdict.folder) for verdict in found),
+              *filter(None, [os.environ.get("ROS_PACKAGE_PATH")])]
+    return Check(arguments, run_commands, {**os.environ, "ROS_PACKAGE_PATH": ":".join(places)},
+                 {verdict.name: verdict.programs for verdict in found})
+
+
+def _of_files(verdict: Verdict, files: list[Path], check: Check, until: float
+              ) -> Iterator[Finding]:
+    """What does not simply work in a package's files; `until` is a time of time.monotonic()."""
+    where = _where(verdict)
+    met: list[Finding] = []
+    for number, path in enumerate(files):
+        if time.monotonic() > until:
+            yield Finding(where, f"{len(files) - number} of its {len(files)} files", UNCHECKED,
+                          f"the {LONGEST:g} s for the workspace are over; build and source it, "
+                          f"then type rosrun bullet_sim_ros check {verdict.name}")
+            break
+        met += check.file(path, alone=False)
+    else:
+        if files and not any(found.status in (*SERIOUS, UNCHECKED) for found in met):
+            yield Finding(where, f"launch files, worlds, robots and YAML ({len(files)})", WORKS)
+    yield from (finding for finding in met if finding.status != WORKS)
+
+
+def _where(verdict: Verdict) -> str:
+    return f"package {verdict.name} ({verdict.folder})"
+
+
+def _of_package(verdict: Verdict, workspace: Path) -> list[Finding]:
+    where = _where(verdict)
+    found = [Finding(where, "build", PROBLEM, f"it is left out: {key}: {why}")
+             for key, why in verdict.stops.items()]
+    found += [Finding(where, "catkin_make", PROBLEM, f"it is left out: {key}: {why}")
+              for key, why in verdict.clashes.items()]
+    found += [Finding(where, file, ABSENT, f"left out: {why}")
+              for file, why in verdict.left_out.items()]
+    found += [Finding(where, name, ABSENT, f"{key} needs it: make deps WS={workspace}")
+              for name, key in verdict.missing.items()]
+    found += [Finding(where, key, ABSENT, f"it will be without: {why}")
+              for key, why in verdict.lacks.items()]
+    if not verdict.stops and not verdict.missing:
+        found.append(Finding(where, "build", WORKS))
+    return found

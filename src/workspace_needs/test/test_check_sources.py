@@ -1,0 +1,75 @@
+"""What check says of a package's scripts and C++ nodes that will not run."""
+
+import subprocess
+import time
+
+import pytest
+from workspace_needs.check.sources import program_findings
+
+
+@pytest.fixture
+def node(tmp_path):
+    """Writes an executable script; what is found in its package."""
+    path = tmp_path / "scripts" / "talker.py"
+    path.parent.mkdir()
+
+    def write(content: bytes) -> list[tuple[str, str]]:
+        path.write_bytes(content)
+        path.chmod(0o755)
+        return [(finding.where, finding.how) for finding in program_findings(tmp_path)]
+    write.path = path
+    return write
+
+
+@pytest.mark.parametrize("first", [b"#!/usr/bin/env python3\r\n", b"\xef\xbb\xbf#!/bin/sh\n"])
+def test_the_command_that_is_named_mends_the_script(node, first):
+    (where, how), = node(first + b"exit\n")
+    assert where == str(node.path) and "no interpreter is found; type: sed -i" in how
+    subprocess.run(how.partition("type: ")[2], shell=True, check=True)
+    assert node(node.path.read_bytes()) == []
+
+
+@pytest.mark.parametrize("first, named", [
+    (b"#!/usr/bin/python2.7", "/usr/bin/python2.7 here; write #!/usr/bin/env python3"),
+    (b"#! /usr/bin/env -S pythn3 -u", "pythn3 here"), (b"#!/opt/own/perl", "/opt/own/perl here"),
+    (b"#!", "interpreter here")])
+def test_an_interpreter_that_is_not_there(node, first, named):
+    (_, how), = node(first + b"\n")
+    assert how.startswith("there is no ") and named in how
+
+
+@pytest.mark.parametrize("content", [
+    b"#!/usr/bin/env python3\n", b"#!/bin/sh -e\nx\r\n", b"\x7fELF\n", b"",
+    b"#!/usr/bin/env python2.7\n", b"import os\n", b"#!/usr/bin/env -S A=1 python3 -u\n"])
+def test_others_are_not_named(node, content):
+    assert node(content) == []
+
+
+def test_what_catkin_starts_itself_needs_no_first_line(node):
+    (node.path.parents[1] / "CMakeLists.txt").write_text(
+        "catkin_install_python(PROGRAMS scripts/talker.py DESTINATION x)")
+    assert node(b"#!/usr/bin/python2.7\n") == []
+
+
+@pytest.mark.parametrize("line, named", [
+    (b'image_transport::TransportHints hints("compressed");', True),
+    (b'it.subscribe("a", 1, f, this, TransportHints("theora"));', True),
+    (b'it.subscribe("a", 1, f, this, TransportHints("raw"));', False),
+    (b'TransportHints::fromNode(n);', False)])
+def test_a_transport_without_a_plugin_is_named_with_its_line(tmp_path, monkeypatch, line, named):
+    monkeypatch.setattr("workspace_needs.check.sources._is_here", lambda package: False)
+    (tmp_path / "see.cpp").write_bytes(b"#include <x>\n" + line)
+    found = [(finding.where, finding.part) for finding in program_findings(tmp_path)]
+    assert found == ([(str(tmp_path / "see.cpp"), "line 2")] if named else [])
+
+
+def test_a_link_to_nowhere_is_no_source(tmp_path):
+    (tmp_path / ".#see.cpp").symlink_to("me@host.1234")  # Emacs's lock
+    assert list(program_findings(tmp_path)) == []
+
+
+def test_the_time_for_a_source_is_linear(tmp_path):
+    (tmp_path / "see.cpp").write_text("TransportHints(" * 20_000)
+    began = time.process_time()
+    assert list(program_findings(tmp_path)) == []
+    assert time.process_time() - began < 5  # a minute without bounds
