@@ -472,6 +472,22 @@ def test_what_a_disabled_heap_stands_on_can_be_taken_away(counted):
     assert all(barrel.pose.position[2] < 0.9 for barrel in barrels)
 
 
+def test_many_boxes_sunk_into_the_ground_sleep_soon_and_one_that_is_hit_moves(counted):
+    """A quarter of a second after they are out of the ground, at 0.2 m/s."""
+    world = counted.world
+    world.spawn(ground(1.0))
+    boxes = [world.spawn(BOX, Pose((n % 8 * 0.1, n // 8 * 0.1, 0.04)), f"box{n}")
+             for n in range(64)]
+    counted.run(0.45)
+    assert all(abs(box.pose.position[2] - 0.05) < 0.01 for box in boxes)
+    assert counted.run(0.6) < 600, "awake for longer than half a second"
+    before = boxes[7].pose.position[0]
+    ball = world.spawn(single("ball", Sphere(0.05), mass=5.0), Pose((1.0, 0.0, 0.06)))
+    ball.set_velocity(Twist((-4.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
+    counted.run(0.3)
+    assert boxes[7].pose.position[0] < before - 0.003
+
+
 def test_a_model_that_must_not_be_disabled_goes_on(counted):
     """`<allow_auto_disable>0`: it trembles for as long as it likes."""
     # conforms: sdf model/allow_auto_disable

@@ -11,15 +11,16 @@ from bullet_sim.physics.island_sleeping import IslandSleeping
 
 
 class Pair:
-    """Two bodies that touch, always at the same place (m) along x and turned (rad) about z."""
+    """Bodies that touch, always at the same place (m) along x and turned (rad) about z."""
 
-    def __init__(self):
+    def __init__(self, bodies: int = 2):
+        self._contacts = [(0, number, number + 1) for number in range(1, bodies)]
         self.place = self.turn = 0.0
         self.asleep: list[int] = []
         self.pushes: list[tuple] = []
         self._sleeping = IslandSleeping(self._run, [
-            SimpleNamespace(number=number, auto_disables=True,
-                            tree=SimpleNamespace(fixed_base=False)) for number in (1, 2)])
+            SimpleNamespace(number=number + 1, auto_disables=True,
+                            tree=SimpleNamespace(fixed_base=False)) for number in range(bodies)])
 
     def _run(self, function, *args, activationState=None, **_):
         if function is pybullet.getBasePositionAndOrientation:
@@ -29,7 +30,7 @@ class Pair:
             self.pushes.append(args)
         if activationState == pybullet.ACTIVATION_STATE_SLEEP:
             self.asleep.append(args[0])
-        return [(0, 1, 2)] if function is pybullet.getContactPoints else None
+        return self._contacts if function is pybullet.getContactPoints else None
 
     def change(self, function, *args) -> None:
         """As a client does: what sleeps is enabled first."""
@@ -75,3 +76,19 @@ def test_a_push_of_what_wakes_counts_after_another_is_removed_and_goes_with_its_
     pair.pushes.clear()
     pair.look(1)
     assert pair.pushes == [(2, (0.5, 0.0, 0.0))]
+
+
+@pytest.mark.parametrize("bodies, samples", [(63, 20), (64, 5)])
+def test_many_bodies_are_disabled_after_a_quarter_of_a_second(bodies, samples):
+    pair = Pair(bodies)
+    pair.look(10, speed=0.5)
+    pair.look(samples - 1)
+    assert not pair.asleep
+    pair.look(1)
+    assert len(pair.asleep) == bodies
+
+
+def test_many_bodies_that_go_on_moving_are_not_disabled():
+    pair = Pair(64)
+    pair.look(60, speed=0.15)
+    assert not pair.asleep

@@ -3,8 +3,9 @@
 Overlapping shapes push one another without end, too fast for `auto_disable` and too slowly to get
 anywhere. As in Gazebo's ODEPhysics::Load (physics/ode/ODEPhysics.cc): models without joints that
 touch are disabled once all of them stayed below 0.1 m/s and 0.1 rad/s for a second; any change of
-one of them, or a push, ends that. Unlike there, the means over that second count, and a body that
-touches no other such body stays enabled: a ball that rolls slowly keeps rolling.
+one of them, or a push, ends that. Unlike there, the means over that second count, a body that
+touches no other such body stays enabled (a ball that rolls slowly keeps rolling), and a quarter of
+a second is enough for 64 bodies or more, of which Bullet solves some ten steps in a second.
 """
 
 import math
@@ -19,6 +20,8 @@ SPEED = 0.1  # m/s, of the mean over SAMPLES: ODEPhysics::Load's threshold
 RATE = 0.1  # rad/s
 TREMBLING = 3.0  # times as fast it may be between two samples
 SAMPLES = round(1.0 / SAMPLE_PERIOD)  # a second, as there
+MANY_BODIES = 64  # in one island, for which FEW_SAMPLES are enough
+FEW_SAMPLES = round(0.25 / SAMPLE_PERIOD)
 # (m/s)^2 + (rad/s)^2 above which the engine wakes a body that is pushed
 SLEEP_THRESHOLD = 2 * 0.05 ** 2
 # The same while it falls asleep: the engine solves one more step, which pushes.
@@ -40,6 +43,7 @@ class IslandSleeping:
         self._bodies = bodies
         self._poses: dict[int, deque] = {}  # by number, of the samples since it was last fast
         self._disabled: set[int] = set()
+        self._early: set[int] = set()  # those of them that were not slow for a second yet
         self._falling_asleep: set[int] = set()  # those of them from the last sample
         self._waking: set[int] = set()  # enabled since the last step; not yet in the next one
         self._late: list[tuple[Callable, tuple]] = []  # pushes of those, to be repeated
@@ -55,14 +59,21 @@ class IslandSleeping:
         poses = {body.number: self._run(pybullet.getBasePositionAndOrientation, body.number)
                  for body in self._bodies if body.auto_disables}
         self._poses = {number: self._quiet(number, pose) for number, pose in poses.items()}
-        ready = {number for number, seen in self._poses.items()
-                 if len(seen) > SAMPLES and _slower(seen[0], seen[-1], SAMPLES * SAMPLE_PERIOD)}
-        self._disabled &= ready
+        ready = self._slow(SAMPLES)
+        nearly = self._slow(FEW_SAMPLES) if len(poses) >= MANY_BODIES else set()
+        self._early &= nearly - ready
+        self._disabled &= ready | self._early
         for number in self._falling_asleep & self._disabled:
             self._run(pybullet.changeDynamics, number, -1, sleepThreshold=SLEEP_THRESHOLD)
         self._falling_asleep.clear()
-        if ready - self._disabled:
-            self._disable(ready)
+        if ready - self._disabled or len(nearly - self._disabled) >= MANY_BODIES:
+            self._disable(ready, nearly)
+
+    def _slow(self, samples: int) -> set[int]:
+        """Numbers of the bodies whose mean speed over so many samples was low."""
+        return {number for number, seen in self._poses.items()
+                if len(seen) > samples
+                and _slower(seen[-1 - samples], seen[-1], samples * SAMPLE_PERIOD)}
 
     def _quiet(self, number: int, pose: tuple) -> deque:
         """Its poses since it was last faster than a vibration."""
@@ -92,16 +103,19 @@ class IslandSleeping:
             self._late = [late for late in self._late if late[1][0] != args[0]]
         return bool(concerned)
 
-    def _disable(self, ready: set[int]) -> None:
+    def _disable(self, ready: set[int], nearly: set[int]) -> None:
+        """`ready`: slow for long enough; `nearly`: for long enough in an island of many bodies."""
         still = {body.number for body in self._bodies if body.tree.fixed_base}
         for island in _islands(self._touching(), still):
-            if len(island) > 1 and island <= ready and not island <= self._disabled:
+            slow = ready | nearly if len(island) >= MANY_BODIES else ready
+            if len(island) > 1 and island <= slow and not island <= self._disabled:
                 for number in island:
                     self._run(pybullet.resetBaseVelocity, number, (0, 0, 0), (0, 0, 0))
                     self._activate(number, pybullet.ACTIVATION_STATE_ENABLE_SLEEPING,
                                    sleepThreshold=FALLING_ASLEEP_THRESHOLD)
                     self._activate(number, pybullet.ACTIVATION_STATE_SLEEP)
                 self._disabled |= island
+                self._early |= island - ready
                 self._falling_asleep |= island
 
     def _touching(self) -> set[tuple[int, int]]:
