@@ -358,7 +358,7 @@ def test_a_motion_that_is_no_number_starts_the_model_again(world, caplog):
     other = world.spawn(read(link(box())), Pose((2, 0, 0.05)), "other")
     run(world, 0.2)
     for _ in range(2):
-        broken.bodies[0].change(pybullet.applyExternalForce, -1, (math.nan, 0, 0), (0, 0, 0),
+        broken.bodies[0].engine.change(pybullet.applyExternalForce, -1, (math.nan, 0, 0), (0, 0, 0),
                                pybullet.WORLD_FRAME)
         run(world, 1.0)
     assert broken.pose.position == pytest.approx((0, 0, 0.05), abs=1e-3)

@@ -98,7 +98,7 @@ def test_what_a_failed_spawn_made_is_removed(world, monkeypatch, fails):
         raise EngineError("no")
 
     if fails == "Body":  # in the middle of a body
-        monkeypatch.setattr("bullet_sim.physics.body.Body._set_up_joints", refuse)
+        monkeypatch.setattr("bullet_sim.physics.body_joints.BodyJoints.set_up", refuse)
     elif fails == "show":
         monkeypatch.setattr(world, "_show", refuse)
     else:

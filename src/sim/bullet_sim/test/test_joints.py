@@ -204,7 +204,7 @@ def test_a_ball_joint_swings_round_as_a_conical_pendulum(world):
     rate = math.sqrt(GRAVITY / math.cos(tilt))
     turn = Pose.from_xyz_rpy((0, 0, 0), (0.0, tilt, 0.0))
     local = turn.inverse().transform((0.0, 0.0, rate))
-    body.reset_ball("j", turn.orientation, local)
+    body.joints.reset_ball("j", turn.orientation, local)
     run(world, math.pi / rate)
     bob = model.links["bob"].pose.transform((0.0, 0.0, -1.0))
     assert bob == pytest.approx((math.sin(tilt), 0.0, -math.cos(tilt)), abs=2e-3)
@@ -463,8 +463,8 @@ def test_what_a_joint_bears_is_measured_on_after_a_motion_that_is_not_finite(wor
         lamp.joint("j").reaction()
     run(world, 0.2)
     broken = lamps[0].bodies[0]
-    broken.change(pybullet.applyExternalForce, broken.index["lamp"], (math.nan, 0, 0),
-                  (0, 0, 0), pybullet.WORLD_FRAME)
+    broken.engine.change(pybullet.applyExternalForce, broken.links.index["lamp"],
+                         (math.nan, 0, 0), (0, 0, 0), pybullet.WORLD_FRAME)
     run(world, 1.0)
     assert lamps[0].has_recovered
     for lamp in lamps:

@@ -26,7 +26,7 @@ class BodyJoint:
 
     def reaction(self) -> tuple[Vector3, Vector3]:
         """Force (N) and torque (N m) of the child on the joint, in the child link's frame."""
-        return joint_reaction(self._body, self._body.carried_by(self.name))
+        return joint_reaction(self._body, self._body.joints.carried_by(self.name))
 
 
 class Joint(BodyJoint):
@@ -39,35 +39,35 @@ class Joint(BodyJoint):
     @property
     def position(self) -> float:
         """Angle or travel from the described pose."""
-        return self._body.joint_state(self.name)[0]
+        return self._body.joints.state(self.name)[0]
 
     @property
     def velocity(self) -> float:
         """Rate of `position`."""
-        return self._body.joint_state(self.name)[1]
+        return self._body.joints.state(self.name)[1]
 
     def reset(self, position: float, velocity: float = 0.0) -> None:
         """Set the joint's position at once; a screw also travels as it turns."""
-        self._body.reset_joint(self.name, position, velocity)
-        if self.name + TRAVEL in self._body.joint_index:
+        self._body.joints.reset(self.name, position, velocity)
+        if self.name + TRAVEL in self._body.joints.index:
             pitch = -self.description.thread_pitch
-            self._body.reset_joint(self.name + TRAVEL, position / pitch, velocity / pitch)
+            self._body.joints.reset(self.name + TRAVEL, position / pitch, velocity / pitch)
         self._touched()
 
     def drive_velocity(self, velocity: float, effort: float) -> None:
         """Hold a velocity with at most `effort` (N m or N), until the next command."""
-        self._body.drive_velocity(self.name, velocity, effort)
+        self._body.joints.drive_velocity(self.name, velocity, effort)
 
     def drive_effort(self, effort: float) -> None:
         """Apply an effort (N m or N) during the next step, within the joint's limits.
 
         Cut as by Gazebo's Joint::CheckAndTruncateForce (physics/Joint.cc).
         """
-        self._body.drive_effort(self.name, self._within_limit(effort))
+        self._body.joints.drive_effort(self.name, self._within_limit(effort))
 
     def add_effort(self, effort: float) -> None:
         """Add an effort (N m or N) to the drive's during the next step; cut to the limit."""
-        self._body.add_effort(self.name, self._within_limit(effort))
+        self._body.joints.add_effort(self.name, self._within_limit(effort))
 
     def _within_limit(self, effort: float) -> float:
         """Cut to the effort limit; none that would accelerate it beyond the velocity limit."""
@@ -81,7 +81,7 @@ class Joint(BodyJoint):
     @property
     def motor(self) -> tuple[float, float]:
         """The motor's velocity, and its maximum effort."""
-        return self._body.motor(self.name)
+        return self._body.joints.motor(self.name)
 
     def change(self, lower: float, upper: float, damping: float) -> None:
         """Change limits, rad or m (none if `lower` is above `upper`), and damping (N m s/rad)."""
@@ -103,7 +103,7 @@ class PassiveJoint(BodyJoint):
     def reset(self, position: float, velocity: float = 0.0) -> None:
         """A ball joint returns to the described pose; a fixed one stays."""
         if self.description.type == "ball":
-            self._body.reset_ball(self.name)
+            self._body.joints.reset_ball(self.name)
 
     def drive_velocity(self, velocity: float, effort: float) -> None:
         """No effect."""

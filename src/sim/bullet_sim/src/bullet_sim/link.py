@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from bullet_sim.description import LinkDescription
-from bullet_sim.model_state import ModelState
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.weld import Weld
 from bullet_sim.pose import Pose, Vector3
 from bullet_sim.twist import Twist
 
 
+class LinkOwner(Protocol):
+    """What links, and drives by a link, need of their model (`bullet_sim.model.Model`)."""
+
+    name: str
+    pose: Pose
+    twist: Twist
+
+    def link_states(self) -> dict[str, tuple[Pose, Twist]]:
+        """Pose and twist of each link in the world, by name; read once per step."""
+        ...
+
+
 class Link:
     """A link's description and its current pose in the world."""
 
-    def __init__(self, model: ModelState, description: LinkDescription, body: Body):
+    def __init__(self, model: LinkOwner, description: LinkDescription, body: Body):
         self.model = model
         self.description = description
         self.name = description.name
@@ -38,11 +51,11 @@ class Link:
 
     def apply_force(self, force: Vector3, torque: Vector3 = (0.0, 0.0, 0.0)) -> None:
         """Force (N) at the centre of mass and torque (N m), world axes, during the next step."""
-        self.body.apply_force(self.name, force, torque)
+        self.body.links.apply_force(self.name, force, torque)
 
     def apply_steady_force(self, force: Vector3) -> None:
         """Force (N) at the centre of mass, applied in every step, world axes."""
-        self.body.apply_steady_force(self.name, force)
+        self.body.links.apply_steady_force(self.name, force)
 
 
 def gravity_compensation(link: LinkDescription, gravity: Vector3) -> Vector3:

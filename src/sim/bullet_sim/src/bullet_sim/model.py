@@ -8,8 +8,7 @@ from bullet_sim.description import Inertial, JointDescription, ModelDescription
 from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.joint import Joint, LoopBall, LoopJoint, PassiveJoint, SingleJointGroup
 from bullet_sim.link import Link, gravity_compensation
-from bullet_sim.model_state import ModelState
-from bullet_sim.physics.assembly import Tree, assemble, loop_joints
+from bullet_sim.physics.assembly import WORLD, Tree, assemble, loop_joints
 from bullet_sim.physics.axes import SECOND
 from bullet_sim.physics.body import Body
 from bullet_sim.physics.body_joints import JointGroup
@@ -24,7 +23,7 @@ from bullet_sim.pose import Pose, Vector3, rotate
 from bullet_sim.twist import STILL, Twist, dot, shifted_twist, twist_difference
 
 
-class Model(ModelState):
+class Model:
     """A spawned description. Everything is in world coordinates unless a name says otherwise.
 
     SimulationError if the engine cannot hold it.
@@ -32,7 +31,13 @@ class Model(ModelState):
 
     def __init__(self, name: str, description: ModelDescription, pose: Pose,
                  client: PhysicsClient):
-        super().__init__(name, description, pose)
+        self.name = name
+        self.description = description
+        self.static = description.static
+        self.initial_pose = pose
+        self.bodies: list[Body] = []
+        self._fixed_pose = pose  # of a model that is static or has no links
+        self._link_states: dict[str, tuple[Pose, Twist]] | None = None
         self.has_recovered = False  # whether its pose or velocity was ever not finite
         self._auto_disable = client.auto_disable
         trees = [levelled(tree, client.surface_layer) for tree in assemble(description)]
@@ -55,8 +60,8 @@ class Model(ModelState):
             link.name: Link(self, link, owner[link.name]) for link in description.links
         }
         self._axes = {  # all that the engine can move, including second axes and travels of screws
-            joint: Joint(body.joint_description(joint), body, self.forget)
-            for body in self.bodies for joint in body.joint_index
+            joint: Joint(body.joints.description(joint), body, self.forget)
+            for body in self.bodies for joint in body.joints.index
         }
         self._find_joints(loops)
         self._steady = [body for body in self.bodies if body.acts_steadily]
@@ -94,6 +99,57 @@ class Model(ModelState):
 
     # --- motion
 
+    def forget(self) -> None:
+        """Drop the cached link states."""
+        self._link_states = None
+
+    def link_states(self) -> dict[str, tuple[Pose, Twist]]:
+        """Pose and twist of each link, by name."""
+        if self._link_states is None:
+            self._link_states = {}
+            for body in self.bodies:
+                self._link_states.update(body.links.states())
+            self._link_states.pop(WORLD, None)
+        return self._link_states
+
+    @property
+    def pose(self) -> Pose:
+        """Model frame, which keeps its pose relative to the first link."""
+        if self.static or not self.description.links:
+            return self._fixed_pose
+        first = self.description.links[0]
+        return self.link_states()[first.name][0] * first.pose.inverse()
+
+    @property
+    def twist(self) -> Twist:
+        """Velocity of the model frame's origin, world axes."""
+        if self.static or not self.description.links:
+            return STILL
+        pose, twist = self.link_states()[self.description.links[0].name]
+        return shifted_twist(twist, pose.position, self.pose.position)
+
+    def set_pose(self, pose: Pose) -> None:
+        """Move the model as a whole; joints keep their positions."""
+        self._displace(self.bodies, pose * self.pose.inverse())
+        self._fixed_pose = pose
+
+    def move_body(self, body: Body, change: Pose) -> None:
+        """Move one of its bodies, or all of a static model's, by a displacement in the world."""
+        self._displace(self.bodies if self.static else [body], change)
+        self._fixed_pose = change * self._fixed_pose
+
+    def _displace(self, bodies: list[Body], change: Pose) -> None:
+        for body in bodies:
+            body.links.set_base_frame(change * body.links.base_frame())
+        self.forget()
+
+    def set_velocity(self, twist: Twist) -> None:
+        """Move as a whole with that twist of the model frame; joints keep turning."""
+        for body in self.bodies:
+            if not body.tree.fixed_base:
+                body.links.set_twist(twist, self.pose.position)
+        self.forget()
+
     def move_link(self, link: Link, pose: Pose, twist: Twist) -> None:
         """Set the pose of one of its links, with that velocity (world axes).
 
@@ -109,7 +165,7 @@ class Model(ModelState):
             return
         self.move_body(body, pose * link.pose.inverse())
         if not body.tree.fixed_base:
-            body.add_twist(twist_difference(twist, link.twist), pose.position)
+            body.links.add_twist(twist_difference(twist, link.twist), pose.position)
             self.forget()
 
     def change_link(self, link: Link, inertial: Inertial, gravity: bool) -> None:
@@ -138,7 +194,7 @@ class Model(ModelState):
         for joint in (*self._axes.values(), *self.joints.values()):
             joint.reset(0.0)
         for body in self.bodies:
-            body.set_base_frame(self.initial_pose * body.base_pose_model)
+            body.links.set_base_frame(self.initial_pose * body.base_pose_model)
         self._fixed_pose = self.initial_pose
         self.forget()
         self.set_twist(STILL)
@@ -208,7 +264,7 @@ class Model(ModelState):
         """
         for name in names:
             self.joint(name)
-        groups = [body.joint_group(names) for body in self.bodies]
+        groups = [body.joints.group(names) for body in self.bodies]
         groups += [SingleJointGroup(self.joint(name)) for name in names
                    if isinstance(self.joint(name), PassiveJoint)]
         return [group for group in groups if group.names]
@@ -226,15 +282,15 @@ def _project_to_joint(link: Link, pose: Pose, twist: Twist) -> tuple[str, float,
     world. None for a link that is fixed to the world or held by a ball joint.
     """
     body = link.body
-    carrier = body.moving_carrier(link.name)
+    carrier = body.joints.moving_carrier(link.name)
     if carrier is None:
         return None
     joint, axis = carrier.joint, carrier.joint.axis
-    frame = body.engine_frame(body.index[carrier.name])
+    frame = body.links.frame(carrier.name)
     wanted = pose * link.pose.inverse() * frame
     moved = frame.inverse() * wanted
     parent_pose, parent_twist = link.model.link_states().get(
-        body.described_parent(carrier), (Pose(), Twist()))
+        body.joints.described_parent(carrier), (Pose(), Twist()))
     own = twist_difference(
         twist, shifted_twist(parent_twist, parent_pose.position, pose.position))
     if joint.type == "prismatic":
@@ -243,7 +299,7 @@ def _project_to_joint(link: Link, pose: Pose, twist: Twist) -> tuple[str, float,
         x, y, z, w = moved.orientation
         step = math.remainder(2.0 * math.atan2(dot((x, y, z), axis), w), 2.0 * math.pi)
         motion = own.angular
-    position = body.joint_state(joint.name)[0] + step
+    position = body.joints.state(joint.name)[0] + step
     if joint.type != "continuous" and joint.lower <= joint.upper:
         position = max(joint.lower, min(joint.upper, position))
     return joint.name, position, dot(rotate(frame.orientation, axis), motion)

@@ -60,12 +60,12 @@ def lost_models(models: Iterable[Model], error: EngineError, logged: set[str]) -
 def _is_lost(body: Body) -> bool:
     try:
         body.speeds()
-        body.link_states()
+        body.links.states()
     except EngineError:
         return True
     return False
 
 
 def _is_broken(body: Body) -> bool:
-    frame = body.base_frame()
+    frame = body.links.base_frame()
     return math.isnan(sum((*body.speeds(), *frame.position, *frame.orientation)))

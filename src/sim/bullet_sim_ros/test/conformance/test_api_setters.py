@@ -252,7 +252,7 @@ def test_what_a_link_weighs_can_be_changed(bench):
     turning = bench.spawn(BOX, name="free")
     bench.call("/gazebo/set_link_properties", link_name="free::body",
                com=Pose(Point(0.5, 0, 0), NONE), **values)
-    turning.bodies[0].apply_force("body", (4.0, 0, 0), (0, 0, 0.5))
+    turning.bodies[0].links.apply_force("body", (4.0, 0, 0), (0, 0, 0.5))
     bench.run(0.001)
     assert turning.twist.angular[2] == pytest.approx(0.001, rel=1e-3)  # torque / izz
     assert turning.twist.linear[:2] == pytest.approx((0.001, -0.0005), rel=1e-3)  # about the com

@@ -97,7 +97,7 @@ class AutoDisable:
             speed, rate = body.speeds()
             self.found_nan = self.found_nan or speed != speed
             self.is_fast = self.is_fast or speed > FAST_SPEED or rate > FAST_RATE
-            motion = max(motion, _motion(speed, rate, body.wants_to_move()))
+            motion = max(motion, _motion(speed, rate, body.joints.wants_to_move()))
             if self.is_fast:
                 break
         if motion >= 1:

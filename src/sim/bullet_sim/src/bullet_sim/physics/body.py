@@ -12,16 +12,14 @@ from bullet_sim.physics import contact_parameters as contact
 from bullet_sim.physics.assembly import PhysicsLink, Tree
 from bullet_sim.physics.body_joints import BodyJoints
 from bullet_sim.physics.body_links import BodyLinks
-from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.client import BASE, NOWHERE, EngineBody, PhysicsClient
 from bullet_sim.physics.engine import EngineError, pybullet
-from bullet_sim.physics.engine_handle import BASE
 from bullet_sim.physics.inertia import sound_inertial
 from bullet_sim.physics.springs import Springs
 from bullet_sim.physics.velocity_decay import VelocityDecay
 from bullet_sim.pose import Pose
 
 MANY_BODIES = 60  # from which on links without collisions are filtered out
-NOWHERE = -1  # the number of a body that is not in the engine
 FASTEST_JOINT = 1e3  # rad/s or m/s; the engine's own limit of 100 would slow a small wheel
 
 
@@ -54,27 +52,34 @@ def fasten(attachment: Attachment) -> None:
             body.attached.append(attachment)
 
 
-class Body(BodyLinks, BodyJoints):
-    """A loaded tree, with links and joints by name."""
+class Body:
+    """A loaded tree, with its `links` and `joints` by name."""
 
     def __init__(self, client: PhysicsClient, tree: Tree, pose_world_model: Pose):
-        self.tree = tree
         self.client = client
+        self.engine = EngineBody(client, tree)
+        self.links = BodyLinks(self.engine)
+        self.joints = BodyJoints(self.engine, self.links)
         self.base_pose_model = tree.links[0].pose_parent
-        self.index = {link.name: number - 1 for number, link in enumerate(tree.links)}
         self._physics_link = {link.name: link for link in tree.links}
-        self._refused = set()
-        self._find_joints()
         self.attached: list[Attachment] = []
-        self._link_indices = list(range(len(tree.links) - 1))
         self.may_auto_disable = True  # if its model allows it
-        self.number = NOWHERE
         try:
             self.load(pose_world_model * self.base_pose_model)
         except Exception:
             self._destroy()  # half of it may be there
             raise
         client.auto_disable.bodies.append(self)
+
+    @property
+    def tree(self) -> Tree:
+        """Its links and joints as they are in the engine."""
+        return self.engine.tree
+
+    @property
+    def number(self) -> int:
+        """The engine's number of it."""
+        return self.engine.number
 
     @property
     def is_loaded(self) -> bool:
@@ -84,15 +89,15 @@ class Body(BodyLinks, BodyJoints):
     # --- set-up
 
     def _create(self, frame: Pose) -> None:
-        self.number = self.client.load(self.tree, frame)
-        inertial = self.dynamics(BASE)
-        self._pose_base_com = Pose(inertial[3], inertial[4])
+        self.engine.number = self.client.load(self.tree, frame)
+        self.links.set_up()
         self._set_up_contacts()
-        self._set_up_joints()
-        self._steady = [each for each in (Springs(self), VelocityDecay(self)) if each]
+        self.joints.set_up()
+        steady = Springs(self.engine, self.joints), VelocityDecay(self.engine, self.links)
+        self._steady = [each for each in steady if each]
         for link in self.tree.links:
             if link.collisions and link.collisions[0].laser_retro:
-                seen = self.number, self.index[link.name]
+                seen = self.number, self.links.index[link.name]
                 self.client.retro[seen] = link.collisions[0].laser_retro
 
     def rebuild(self, links: dict[str, PhysicsLink]) -> None:
@@ -101,30 +106,30 @@ class Body(BodyLinks, BodyJoints):
         The engine cannot move a centre of mass or add a limit: the body is loaded again. Poses,
         velocities and motors stay; the body's number changes.
         """
-        frame, base = self.base_frame(), self.tree.links[0].described
-        at, twist = self.link_states()[base]
-        joints = {name: self.joint_state(name) for name in self.joint_index}
-        balls = {name: self._ball_state(name) for name in self.ball_index}
-        motors = self._motors
+        frame, base = self.links.base_frame(), self.tree.links[0].described
+        at, twist = self.links.states()[base]
+        joints = {name: self.joints.state(name) for name in self.joints.index}
+        balls = {name: self.joints.ball_state(name) for name in self.joints.ball_index}
+        motors = self.joints.motors
         self.unload()
-        self.tree = replace(self.tree, links=[
+        self.engine.tree = replace(self.tree, links=[
             links.get(link.name, link) for link in self.tree.links])
         self._physics_link = {link.name: link for link in self.tree.links}
         self.load(frame, attach=False)
         for name, (position, rate) in joints.items():
-            self.reset_joint(name, position, rate)
+            self.joints.reset(name, position, rate)
             if name in motors:
-                self.drive_velocity(name, *motors[name])
+                self.joints.drive_velocity(name, *motors[name])
         for name, (turn, rate) in balls.items():
-            self.reset_ball(name, turn, rate)
+            self.joints.reset_ball(name, turn, rate)
         if not self.tree.fixed_base:
-            self.set_twist(twist, at.position)
+            self.links.set_twist(twist, at.position)
         for attachment in self.attached:
             attachment.attach()
 
     def unload(self) -> None:
         """Unload it, with its attachments; `load` is the inverse."""
-        self._keep_loads()
+        self.joints.keep_loads()
         for attachment in self.attached:
             attachment.detach()
         self._destroy()
@@ -133,9 +138,7 @@ class Body(BodyLinks, BodyJoints):
         """Load it into the engine, at rest, with the base's frame at `frame` in the world."""
         self._create(frame)
         self.client.planes.put(self.number, self.tree, frame)
-        self._motors = {}
-        for name in self.joint_index:
-            self.release(name)
+        self.joints.release_all()
         for attachment in self.attached if attach else ():
             attachment.attach()
 
@@ -148,25 +151,26 @@ class Body(BodyLinks, BodyJoints):
 
     def change_joint(self, joint: str, **changes) -> None:
         """Change fields of its JointDescription: limits, damping, type."""
-        held = self.tree.links[self.joint_index[joint] + 1]
+        held = self.tree.links[self.joints.index[joint] + 1]
         self.rebuild({held.name: replace(held, joint=replace(held.joint, **changes))})
 
     def _set_up_contacts(self) -> None:
         # PyBullet damps by default; SDF's <velocity_decay> is 0 by default.
-        self.change(pybullet.changeDynamics, BASE, maxJointVelocity=FASTEST_JOINT)
+        self.engine.change(pybullet.changeDynamics, BASE, maxJointVelocity=FASTEST_JOINT)
         mass = self._mass()
         many = len(self.client.auto_disable.bodies) >= MANY_BODIES
         for link in self.tree.links:
             if many and not link.collisions:
                 # The engine pairs empty shapes in one place as well: a million of a thousand.
-                self.change(pybullet.setCollisionFilterGroupMask, self.index[link.name], 0, 0)
+                self.engine.change(
+                    pybullet.setCollisionFilterGroupMask, self.links.index[link.name], 0, 0)
             values = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
             if link.joint is not None:
                 values["jointDamping"] = link.joint.damping
             if link.collisions:
-                com = self.com_in_link(self.index[link.name])
+                com = self.links.com_in_link(self.links.index[link.name])
                 values |= contact.contact_values(link.collisions[0], self.tree.fixed, com, mass)
-            self.change(pybullet.changeDynamics, self.index[link.name], **values)
+            self.engine.change(pybullet.changeDynamics, self.links.index[link.name], **values)
 
     def limit_correcting_velocity(self, part: float | None, timestep: float) -> None:
         """Let contacts correct at most this part of their depth per step (s); None: as usual."""
@@ -178,8 +182,8 @@ class Body(BodyLinks, BodyJoints):
             if values and part is not None and part < contact.corrected_part(values, timestep):
                 values = contact.correcting_velocity_values(part, timestep)
             if values:
-                self.change_without_waking(
-                    pybullet.changeDynamics, self.index[link.name], **values)
+                self.engine.change_without_waking(
+                    pybullet.changeDynamics, self.links.index[link.name], **values)
 
     def _mass(self) -> float:
         return sum(link.inertial.mass for link in self.tree.links)
@@ -216,8 +220,8 @@ class Body(BodyLinks, BodyJoints):
         for seen in [seen for seen in self.client.retro if seen[0] == self.number]:
             del self.client.retro[seen]
         with contextlib.suppress(EngineError):
-            self.change(pybullet.removeBody)
-        self.number = NOWHERE
+            self.engine.change(pybullet.removeBody)
+        self.engine.number = NOWHERE
 
     # --- rest
 
@@ -225,21 +229,21 @@ class Body(BodyLinks, BodyJoints):
     def auto_disables(self) -> bool:
         """Whether nothing but contacts and gravity acts on it."""
         return self.may_auto_disable and not (
-            self.tree.fixed or self.joint_index or self.ball_index or self.attached
+            self.tree.fixed or self.joints.index or self.joints.ball_index or self.attached
             or self.acts_steadily)
 
     def speeds(self) -> tuple[float, float]:
         """Maximum speed, m/s, and angular velocity, rad/s, of base and joints; NaN if any is."""
-        linear, angular = self.read(pybullet.getBaseVelocity)
+        linear, angular = self.engine.read(pybullet.getBaseVelocity)
         speed, rate = max(map(abs, linear)), max(map(abs, angular))
         total = sum(linear) + sum(angular)
-        for joint, index in self.joint_index.items():
-            moved = abs(self.read(pybullet.getJointState, index)[1])
+        for joint, index in self.joints.index.items():
+            moved = abs(self.engine.read(pybullet.getJointState, index)[1])
             total += moved
-            if self.joint_description(joint).type == "prismatic":
+            if self.joints.description(joint).type == "prismatic":
                 speed = max(speed, moved)
             else:
                 rate = max(rate, moved)
-        for joint in self.ball_index:
-            rate = max(rate, *map(abs, self._ball_state(joint)[1]))
+        for joint in self.joints.ball_index:
+            rate = max(rate, *map(abs, self.joints.ball_state(joint)[1]))
         return (speed, rate) if total == total else (math.nan, math.nan)

@@ -1,5 +1,7 @@
-"""One PyBullet world: connection, engine parameters, and a quiet importer."""
+"""One PyBullet world: connection, engine parameters, a quiet importer, and a body in it."""
 
+import logging
+import math
 import tempfile
 from pathlib import Path
 
@@ -13,6 +15,11 @@ from bullet_sim.physics.island_sleeping import IslandSleeping
 from bullet_sim.physics.planes import Planes
 from bullet_sim.physics.urdf_text import MeshFiles, urdf_text
 from bullet_sim.pose import Pose, Vector3
+
+log = logging.getLogger(__name__)
+
+BASE = -1  # PyBullet's number of a body's base link
+NOWHERE = -1  # the number of a body that is not in the engine
 
 LOAD_FLAGS = (
     pybullet.URDF_USE_INERTIA_FROM_FILE
@@ -97,7 +104,7 @@ class PhysicsClient:
             self._island_sleeping.after_step(self.auto_disable.is_sampling)
             if self.auto_disable.nearly_disabled:
                 for body in self.auto_disable.bodies:
-                    body.keep_feedback()
+                    body.joints.keep_feedback()
 
     def load(self, tree: Tree, pose: Pose) -> int:
         """Load a body from a tree; returns its number. The importer's output is suppressed.
@@ -127,3 +134,39 @@ class PhysicsClient:
     def close(self) -> None:
         """Disconnect; the client must not be used afterwards."""
         pybullet.disconnect(physicsClientId=self._id)
+
+
+class EngineBody:
+    """A body's number and tree, and the engine's functions called with that number."""
+
+    def __init__(self, client: PhysicsClient, tree: Tree):
+        self.client = client
+        self.tree = tree
+        self.number = NOWHERE
+        self._refused: set[str] = set()  # quantities already reported as not finite
+
+    def change(self, function, *args, **kwargs):
+        """Run a pybullet function that changes this body; the world is stepped again."""
+        return self.client.change(function, self.number, *args, **kwargs)
+
+    def change_without_waking(self, function, *args, **kwargs):
+        """The same for effects in every step: a world at rest stays at rest."""
+        return self.client.change_without_waking(function, self.number, *args, **kwargs)
+
+    def read(self, function, *args, **kwargs):
+        """Run a pybullet function that reads this body's state."""
+        return self.client.read(function, self.number, *args, **kwargs)
+
+    def dynamics(self, index: int) -> tuple:
+        """PyBullet's row of a link: mass, friction, principal inertia, centre of mass ..."""
+        return self.read(pybullet.getDynamicsInfo, index)
+
+    def is_number(self, what: str, *values: float) -> bool:
+        """Whether they are finite: one NaN in the engine spreads to all bodies in contact."""
+        if all(map(math.isfinite, values)):
+            return True
+        if what not in self._refused:
+            self._refused.add(what)
+            log.warning("%s: a %s of %s is not finite and is left out, here and from now on",
+                        self.tree.links[-1].described, what, ", ".join(map(str, values)))
+        return False

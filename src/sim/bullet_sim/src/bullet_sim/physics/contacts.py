@@ -54,7 +54,7 @@ class Touched:
         if len(link.collisions) > 1:
             key = number, index
             if key not in self._frames:
-                self._frames[key] = body.engine_frame(index).inverse()
+                self._frames[key] = body.links.engine_frame(index).inverse()
             point = (self._frames[key] * Pose(point)).position
         return f"{model}::{link.described}::{nearest_collision(link.collisions, point).name}"
 

@@ -7,9 +7,8 @@ from bullet_sim.description import JointDescription, ModelDescription
 from bullet_sim.physics.assembly import WORLD, PhysicsLink
 from bullet_sim.physics.axes import TRAVEL
 from bullet_sim.physics.body import Body, fasten
-from bullet_sim.physics.client import PhysicsClient
+from bullet_sim.physics.client import BASE, PhysicsClient
 from bullet_sim.physics.engine import pybullet
-from bullet_sim.physics.engine_handle import BASE
 from bullet_sim.pose import Pose, Vector3, rotate
 
 log = logging.getLogger(__name__)
@@ -40,7 +39,7 @@ class LoopConstraints:
     def attach(self) -> None:
         """Create the constraints. KeyError for a joint whose link is in no body."""
         for body in self.bodies:
-            for name in body.joint_index:
+            for name in body.joints.index:
                 if name.endswith(TRAVEL):
                     self._make(*_thread(body, name))
         for joint in self._loose:
@@ -70,11 +69,11 @@ class LoopConstraints:
         raise KeyError(name)
 
     def _com_in_model(self, body: Body, link: PhysicsLink) -> Pose:
-        index = body.index[link.name]
+        index = body.links.index[link.name]
         if index == BASE:
-            return body.base_pose_model * body.com_in_link(BASE)
+            return body.base_pose_model * body.links.com_in_link(BASE)
         described = next(d for d in self._model.links if d.name == link.described)
-        return described.pose * link.offset * body.com_in_link(index)
+        return described.pose * link.offset * body.links.com_in_link(index)
 
     def _loop(self, joint: JointDescription) -> Rows:
         child = next((link.pose for link in self._model.links if link.name == joint.child), Pose())
@@ -83,7 +82,8 @@ class LoopConstraints:
         body2, link2 = self._place(joint.child)
         frames = [self._com_in_model(*place).inverse() * frame
                   for place in ((body1, link1), (body2, link2))]
-        ends = (body1.number, body1.index[link1.name], body2.number, body2.index[link2.name])
+        ends = (body1.number, body1.links.index[link1.name],
+                body2.number, body2.links.index[link2.name])
         if joint.type in ("fixed", "prismatic"):
             kind = pybullet.JOINT_FIXED if joint.type == "fixed" else pybullet.JOINT_PRISMATIC
             yield (*ends, kind, joint.axis, *(f.position for f in frames),
@@ -120,7 +120,8 @@ class LoopConstraints:
                 described = next(d for d in self._model.links if d.name == held.described)
                 own = rotate((described.pose * held.offset).orientation, held.joint.axis)
                 same = sum(a * b for a, b in zip(wanted, own, strict=True)) > 0
-                return body, body.index[held.name], 1.0 if same == (held.name == link) else -1.0
+                sign = 1.0 if same == (held.name == link) else -1.0
+                return body, body.links.index[held.name], sign
         return None
 
 
@@ -134,6 +135,6 @@ def _points(joint: JointDescription) -> list[Vector3]:
 def _thread(body: Body, travel: str) -> tuple[tuple, dict]:
     """A screw's travel, m, and turn, rad: travel + turn / thread_pitch = 0."""
     turn = travel.removesuffix(TRAVEL)
-    ends = body.number, body.joint_index[travel], body.number, body.joint_index[turn]
-    ratio = 1.0 / body.joint_description(turn).thread_pitch
+    ends = body.number, body.joints.index[travel], body.number, body.joints.index[turn]
+    ratio = 1.0 / body.joints.description(turn).thread_pitch
     return (*ends, pybullet.JOINT_GEAR, (0.0, 0.0, 1.0), NO_PIVOT, NO_PIVOT), {"gearRatio": ratio}

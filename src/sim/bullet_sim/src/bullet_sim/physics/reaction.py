@@ -14,11 +14,11 @@ def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
     downward force. The effort of a limit that is pressed against is missing along the
     axis. Zero until the step after the first call, unless the joint asked for feedback.
     """
-    index = body.index[link.name]
-    body.enable_feedback(index)
-    effort, row = body.joint_effort(index)
+    index = body.links.index[link.name]
+    body.joints.enable_feedback(index)
+    effort, row = body.joints.effort_and_load(index)
     # In the engine: of the parent on the child, about its centre of mass, in its principal axes.
-    com = body.com_in_link(index)
+    com = body.links.com_in_link(index)
     force = rotate(com.orientation, row[:3])
     torque = rotate(com.orientation, row[3:])
     joint = link.carrier
@@ -37,7 +37,7 @@ def joint_reaction(body: Body, link: PhysicsLink) -> tuple[Vector3, Vector3]:
         return negative(rotate(out, force)), negative(rotate(out, torque))
     # The engine's child is the described parent: the wrench on the described child is its negative.
     parent = next(other for other in body.tree.links if other.name == link.parent)
-    here, there = (body.engine_frame(body.index[name]) for name in (link.name, parent.name))
+    here, there = (body.links.frame(each.name) for each in (link, parent))
     turn = multiply(conjugate(there.orientation), here.orientation)
     out = multiply(parent.offset.orientation, turn)
     return rotate(out, force), rotate(out, torque)

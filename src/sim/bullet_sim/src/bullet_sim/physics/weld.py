@@ -25,10 +25,10 @@ class Weld:
 
     def _present_pose(self) -> Pose:
         """Pose of the link's frame relative to the holder."""
-        pose = self._body.engine_frame(self._body.index[self._link])
+        pose = self._body.links.frame(self._link)
         if self._other is None:
             return pose
-        return self._other.engine_frame(self._other.index[self._other_link]).inverse() * pose
+        return self._other.links.frame(self._other_link).inverse() * pose
 
     def renew(self) -> None:
         """Hold the link at its current pose, after it or its holder was moved."""
@@ -41,9 +41,9 @@ class Weld:
         if self._constraint is not None or not all(each.is_loaded for each in self.bodies):
             return
         held = self._held()
-        index = self._body.index[self._link]
+        index = self._body.links.index[self._link]
         holder = ((WORLD_BODY, -1) if self._other is None else
-                  (self._other.number, self._other.index[self._other_link]))
+                  (self._other.number, self._other.links.index[self._other_link]))
         client = self._body.client
         self._constraint = client.change(
             pybullet.createConstraint, self._body.number, index, *holder, pybullet.JOINT_FIXED,
@@ -59,10 +59,11 @@ class Weld:
 
     def _held(self) -> Pose:
         """Pose at which the link's centre of mass is held: relative to the holder's, or world."""
-        held = self._pose_holder_link * self._body.com_in_link(self._body.index[self._link])
+        index = self._body.links.index[self._link]
+        held = self._pose_holder_link * self._body.links.com_in_link(index)
         if self._other is None:
             return held
-        com = self._other.com_in_link(self._other.index[self._other_link])
+        com = self._other.links.com_in_link(self._other.links.index[self._other_link])
         return com.inverse() * held
 
     def shift(self, change: Pose) -> None:

@@ -23,7 +23,7 @@ class HectorBaroPlugin(common.HectorSensor):
         topic = p.topic("altimeter", "altimeterTopicName")
         self._altimeters = self.advertise(Altimeter, topic, queue_size=10)
         if self._altimeters:
-            self._error.offer(self._altimeters.name)
+            common.offer_errors(context, self._error, self._altimeters.name)
         self.begin(0.0)
 
     def measure(self) -> PointStamped:

@@ -38,25 +38,31 @@ class HectorSensor(SensorPlugin):
                  queue_size: int = 10):
         """`topic` and `frame` are the defaults where there are no tags."""
         p = context.parameters
-        self._errors: list[HectorError] = []
+        self._errors: list[ErrorModel] = []
         self._measured: float | None = None  # s, time of the last measurement
         context.on_reset(self._restart)
         self.topic = p.topic(topic)
         super().__init__(context, kind, self.topic, p.text("frameId", frame),
                          tf_prefix=no_tf_prefix, queue_size=queue_size)
 
-    def add_error(self, name: str, size: int, *prefixes: str) -> HectorError:
-        """Add an error model with `size` components; see HectorError.
+    def add_error(self, name: str, size: int, *prefixes: str) -> ErrorModel:
+        """Add an error model with `size` components, from the tags with these prefixes.
 
-        PluginError if a tag is not a number.
+        Where several tags are set, the last prefix counts. PluginError if a tag is not a number.
         """
-        self._errors.append(HectorError(self.context, name, size, *prefixes))
-        return self._errors[-1]
+        context = self.context
+        error = ErrorModel(
+            self.world, f"{context.model.name}::{context.description.name} {name}",
+            read_errors(context.parameters, size, prefixes or ("",)))
+        context.on_reset(error.restart)
+        self._errors.append(error)
+        return error
 
-    def offer(self, error: HectorError, name: str = "") -> None:
+    def offer(self, error: ErrorModel, name: str = "") -> None:
         """Let dynamic_reconfigure change the error model, below the topic if there is one."""
         if self.topic:
-            error.offer(names.join(names.join(self.namespace, self.topic), name))
+            offer_errors(self.context, error,
+                         names.join(names.join(self.namespace, self.topic), name))
 
     def elapsed(self) -> float:
         """Since the last call, s; 0 at the first."""
@@ -81,32 +87,20 @@ class HectorSensor(SensorPlugin):
         return any(error.drifts for error in self._errors) or super().wanted()
 
 
-class HectorError(ErrorModel):
-    """An error model from a plugin's tags, which dynamic_reconfigure can change.
+def offer_errors(context: PluginContext, error: ErrorModel, namespace: str) -> None:
+    """Let dynamic_reconfigure change an error model; each value is set for all components.
 
-    PluginError if a tag is not a number.
+    sensor_model.h, dynamicReconfigureCallback.
     """
+    means = {name: math.fsum(values) / len(values)
+             for name, values in vars(error.parameters).items()}
 
-    def __init__(self, context: PluginContext, name: str, size: int, *prefixes: str):
-        """`prefixes` are those of the tags; where several are set, the last prefix counts."""
-        self._context = context
-        super().__init__(context.world, f"{context.model.name}::{context.description.name} {name}",
-                         read_errors(context.parameters, size, prefixes or ("",)))
-        context.on_reset(self.restart)
+    def change(values: dict[str, float]) -> None:
+        size = len(error.parameters.offset)
+        error.parameters = ErrorParameters(**{name: (values[name],) * size for name in TAGS})
 
-    def offer(self, namespace: str) -> None:
-        """Let dynamic_reconfigure change it; each value is set for all components.
-
-        sensor_model.h, dynamicReconfigureCallback.
-        """
-        means = {name: math.fsum(values) / len(values)
-                 for name, values in vars(self.parameters).items()}
-        offer_changes(self._context, namespace, {
-            name: Value(means[name], *RANGES[name]) for name in RANGES}, self._set)
-
-    def _set(self, values: dict[str, float]) -> None:
-        size = len(self.parameters.offset)
-        self.parameters = ErrorParameters(**{name: (values[name],) * size for name in TAGS})
+    offer_changes(context, namespace,
+                  {name: Value(means[name], *RANGES[name]) for name in RANGES}, change)
 
 
 def with_noise(errors: ErrorParameters, noise: float) -> ErrorParameters:

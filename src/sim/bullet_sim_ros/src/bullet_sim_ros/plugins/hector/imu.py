@@ -8,7 +8,7 @@ from sensor_msgs.msg import Imu as ImuMsg
 from std_srvs.srv import Empty, EmptyResponse
 
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
-from bullet_sim.sensors.error_model import attitude_error
+from bullet_sim.sensors.error_model import ErrorModel, attitude_error
 from bullet_sim.sensors.link_motion import LinkMotion
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host import PluginContext, plugin
@@ -48,7 +48,7 @@ class HectorImuPlugin(common.HectorSensor):
 
     def _serve(self, context: PluginContext, topic: str) -> None:
         """Offer services: calibration clears the gyroscope's drift, the others set a bias."""
-        def setter(error: common.HectorError):
+        def setter(error: ErrorModel):
             def set_bias(request: SetBias._request_class) -> SetBiasResponse:
                 bias = np.array(convert.triple(request.bias))
                 context.host.mailbox.call(lambda: error.set_drift(bias))
