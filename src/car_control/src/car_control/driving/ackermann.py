@@ -90,11 +90,6 @@ def angle_from_hinges(car: CarGeometry, hinges: HingeAngles) -> float:
     return angle_from_curvature(car, sum(bends) / 2)
 
 
-def speed_from_wheels(car: CarGeometry, wheels: WheelSpeeds) -> float:
-    """Speed of the rear axle's middle, m/s, from the two rear wheels."""
-    return car.wheel_radius * (wheels.left_rear + wheels.right_rear) / 2
-
-
 def _checked_curvature(car: CarGeometry, angle: float) -> float:
     if not abs(angle) < sharpest_angle(car):
         raise ValueError(
