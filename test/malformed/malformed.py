@@ -1,7 +1,7 @@
 """Has `check` read spoilt files, each in a process of its own, and says what it did with them.
 
-    python3 drive.py FIRST LAST       the mutants with these seeds; a line for each bad one
-    python3 drive.py parts [WORD]     all files with spoilt parts, or those with WORD in their names
+    python3 malformed.py FIRST LAST       those with these seeds; a line for each bad one
+    python3 malformed.py parts [WORD]     files with spoilt parts, or those with WORD in the name
 """
 
 from __future__ import annotations
@@ -19,12 +19,16 @@ from pathlib import Path
 
 import rospkg
 from large_texts import LARGE
-from mutations import mutant
 from spoilt_parts import PARTS
 from workspace_needs.check import command
 
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "test/fuzz"))
+
+from mutating import malformed  # noqa: E402
+
 PACKAGES = rospkg.RosPack()
-STYLES = Path(PACKAGES.get_path("bullet_sim_ros")) / "test/styles"
+STYLES = ROOT / "src/sim/bullet_sim_ros/test/styles"
 LIMIT = 5.0  # s, of processor time: other work on the machine counts nothing
 LONGEST_WAIT = 60.0  # s, wall; then it hangs
 MEMORY = 1 << 30  # bytes in RAM
@@ -76,14 +80,14 @@ class Outcome:
 
 
 def run(seed: int, folder: Path) -> Outcome:
-    """One mutant."""
+    """One malformed file."""
     files = sources()
     source = files[(seed // 7) % len(files)]
-    mutation, content = mutant(source.read_text(encoding="utf-8"), seed)
+    mutation, content = malformed(source.read_text(encoding="utf-8"), seed)
     path = _beside(source, folder / str(seed))
     path.write_bytes(content.replace(b"THIS_FILE", str(path).encode()))
     if source.suffix == ".yaml":
-        launch = path.with_name("of_the_mutant.launch")
+        launch = path.with_name("of_the_parameters.launch")
         launch.write_text(f'<launch><rosparam file="{path}"/></launch>', encoding="utf-8")
         path = launch
     return checked(path, f"seed {seed} ({mutation} of {source.name})")
@@ -156,7 +160,7 @@ def _be_checked(path: Path, log: Path) -> None:
 
 def main() -> int:
     """The seeds of the command line, or all files with spoilt parts."""
-    with tempfile.TemporaryDirectory(prefix="mutants-") as name:
+    with tempfile.TemporaryDirectory(prefix="malformed-") as name:
         folder, bad = Path(name), 0
         if sys.argv[1] == "parts":
             outcomes = [partial(run_case, case, folder) for case in (*PARTS, *LARGE)
