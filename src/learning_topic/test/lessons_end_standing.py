@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Ctrl-C leaves the robot standing, every time; lesson 5 says so when no images come."""
+"""Ctrl-C leaves the robot standing, every time; lessons 5 and 6 say so when no images come."""
 
 import contextlib
 import signal
@@ -57,16 +57,22 @@ class LessonsEnd(unittest.TestCase):
     def test_lesson_7_ends_standing(self):
         self.ends_standing("07follower_ground.py")
 
-    def test_lesson_5_says_that_no_images_come(self):
+    def says_that_no_images_come(self, script):
         said = []
         rospy.Subscriber("/rosout", Log, lambda log: said.append(log.msg))
         self.camera.sends = False
         try:
-            with running("05follower_proporation.py"):
+            with running(script):
                 for words in ("no images on camera/rgb/image_raw", "还没有收到图像"):
                     wait_until(lambda w=words: any(w in line for line in said), words)
         finally:
             self.camera.sends = True
+
+    def test_lesson_5_says_that_no_images_come(self):
+        self.says_that_no_images_come("05follower_proporation.py")
+
+    def test_lesson_6_says_that_no_images_come(self):
+        self.says_that_no_images_come("06follower_pid.py")
 
 
 if __name__ == "__main__":

@@ -52,6 +52,14 @@ def test_a_lesson_has_at_most_90_code_lines(path):
     assert len(code) <= 90
 
 
+def test_all_lessons_that_drive_end_alike():
+    """Taught in lesson 5; lesson 7's own idea is what happens without images."""
+    texts = [path.read_text(encoding="utf-8") for path in sorted(SCRIPTS.glob("0[567]*.py"))]
+    stops = {text[text.index("    def stop(self):"):text.index("def main():")] for text in texts}
+    mains = {text[text.index("def main():"):] for text in texts[:2]}
+    assert len(texts) == 3 and len(stops) == len(mains) == 1
+
+
 @pytest.mark.parametrize("path", sorted(SCRIPTS.glob("*.py")), ids=lambda path: path.name)
 def test_lessons_import_only_messages_and_what_every_robot_has(path):
     allowed = {"rospy", "cv2", "cv_bridge", "numpy", "math", "sys", "time"}

@@ -5,9 +5,12 @@ import cv2
 import cv_bridge
 import numpy as np
 import rospy
-from learning_autorace.calibration import compensate, floor_maps
-from learning_autorace.lane import find_lane
-from learning_autorace.node import calibration_of_parameter
+from learning_autorace.ground import (
+    calibration_of_parameter,
+    compensate,
+    find_lane,
+    floor_maps,
+)
 from sensor_msgs.msg import Image
 
 

@@ -1,6 +1,7 @@
-"""Tests run from a checkout that was not built, too."""
+"""Tests run from a checkout that was not built, too; the lessons are modules of their folder."""
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "src"))
+PACKAGE = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(PACKAGE / "src"), str(PACKAGE / "scripts")]

@@ -2,27 +2,24 @@
 
 import math
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
-from learning_autorace.bar import Bar, bar_distance
-from learning_autorace.barriers import between
-from learning_autorace.calibration import (
+from learning_autorace.ground import (
+    AHEAD,
     CalibrationError,
     compensate,
+    find_lane,
     floor_maps,
     load_calibration,
     to_pixel,
 )
-from learning_autorace.course import Course, Finish
-from learning_autorace.lane import AHEAD, LaneKeeper, find_lane
-from learning_autorace.node import Seen
-from learning_autorace.parking import IN, SIDEWAYS, Parking, free_side, way_in
-from learning_autorace.traffic_light import TrafficLight, lit_lamp
-from learning_autorace.tunnel import WALL, Tunnel, along_wall
 
+LANE, LIGHT, BAR, TUNNEL, PARK, COURSE = (import_module(name) for name in (
+    "02lane", "03traffic_light", "04bar", "05tunnel", "06parking", "07course"))
 CONFIG = Path(__file__).resolve().parent.parent / "config" / "camera.yaml"
 CALIBRATION = load_calibration(CONFIG)
 SIZE = 320, 240  # px
@@ -59,7 +56,7 @@ def picture(*spots):
 
 
 def seen(view=None, image=None, points=NOTHING, pose=(0.0, 0.0, 0.0), time=0.0):
-    return Seen(time, picture() if image is None else image,
+    return LANE.Seen(time, picture() if image is None else image,
                 floor(*lane()) if view is None else view, points, pose)
 
 
@@ -105,7 +102,7 @@ def test_a_list_of_aliases_is_not_spelt_out(tmp_path):
 def test_a_camera_that_looks_elsewhere_sees_no_bar():
     image = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
     for pitch in (-1.0, 1.0):
-        assert bar_distance(image, replace(CALIBRATION, pitch=pitch)) is None
+        assert BAR.bar_distance(image, replace(CALIBRATION, pitch=pitch)) is None
 
 
 def test_the_picture_of_a_lane_becomes_the_lane_from_above():
@@ -135,7 +132,7 @@ def test_the_lane_s_middle(view, centre):
 
 
 def test_the_lane_keeper_turns_to_the_middle_and_slows_down_without_one():
-    keeper = LaneKeeper(CALIBRATION)
+    keeper = LANE.LaneKeeper(CALIBRATION)
     speed, turn = keeper.steer(keeper.look(floor(*lane(0.05))), 0.0)
     assert speed > 0.1 and turn > 0.1
     for tick in range(8):
@@ -145,14 +142,14 @@ def test_the_lane_keeper_turns_to_the_middle_and_slows_down_without_one():
 
 @pytest.mark.parametrize("colour, name", [(RED, "red"), (YELLOW, "yellow"), ((0, 255, 0), "green")])
 def test_a_lit_lamp(colour, name):
-    assert lit_lamp(picture((colour, 0.5, 0.18, 0.08, 0.09, 0.09)), CALIBRATION) == name
-    assert lit_lamp(picture((tuple(c // 3 for c in colour), 0.5, 0.18, 0.08, 0.09, 0.09)),
+    assert LIGHT.lit_lamp(picture((colour, 0.5, 0.18, 0.08, 0.09, 0.09)), CALIBRATION) == name
+    assert LIGHT.lit_lamp(picture((tuple(c // 3 for c in colour), 0.5, 0.18, 0.08, 0.09, 0.09)),
                     CALIBRATION) is None
-    assert lit_lamp(picture((colour, 0.5, 0.18, -0.12, 0.3, 0.02)), CALIBRATION) is None
+    assert LIGHT.lit_lamp(picture((colour, 0.5, 0.18, -0.12, 0.3, 0.02)), CALIBRATION) is None
 
 
 def test_the_light_is_obeyed_and_forgotten_when_it_is_passed():
-    light = TrafficLight(CALIBRATION)
+    light = LIGHT.TrafficLight(CALIBRATION)
     for colour, command, done in ((RED, (0.0, 0.0), False), (YELLOW, (0.0, 0.0), False),
                                   ((0, 255, 0), None, False), (None, None, True)):
         image = picture((colour, 0.5, 0.18, 0.08, 0.09, 0.09)) if colour else picture()
@@ -162,9 +159,9 @@ def test_the_light_is_obeyed_and_forgotten_when_it_is_passed():
 
 def test_the_bar_s_distance_and_the_robot_that_waits_for_it():
     closed = picture(((0, 0, 60), 0.3, 0.0, -0.01, 0.12, 0.03))
-    assert bar_distance(closed, CALIBRATION) == pytest.approx(0.3, abs=0.06)
-    assert bar_distance(picture(((0, 0, 60), 0.3, 0.2, 0.1, 0.03, 0.12)), CALIBRATION) is None
-    bar = Bar(CALIBRATION)
+    assert BAR.bar_distance(closed, CALIBRATION) == pytest.approx(0.3, abs=0.06)
+    assert BAR.bar_distance(picture(((0, 0, 60), 0.3, 0.2, 0.1, 0.03, 0.12)), CALIBRATION) is None
+    bar = BAR.Bar(CALIBRATION)
     assert bar.step(seen(image=closed)) == (0.0, 0.0)
     assert bar.step(seen(pose=(0.3, 0.0, 0.0))) is None and not bar.done
     bar.step(seen(pose=(0.7, 0.0, 0.0)))
@@ -173,19 +170,19 @@ def test_the_bar_s_distance_and_the_robot_that_waits_for_it():
 
 def test_barriers_move_the_aim():
     left = np.array([[0.3, 0.05], [0.3, 0.10]])
-    assert between(0.0, NOTHING) == 0.0
-    assert between(0.0, left) == pytest.approx(-0.07)
-    assert between(0.0, -left * (-1, 1)) == pytest.approx(0.07)
-    assert between(0.0, left + np.array((0.3, 0.0))) == 0.0  # still far
+    assert LANE.between(0.0, NOTHING) == 0.0
+    assert LANE.between(0.0, left) == pytest.approx(-0.07)
+    assert LANE.between(0.0, -left * (-1, 1)) == pytest.approx(0.07)
+    assert LANE.between(0.0, left + np.array((0.3, 0.0))) == 0.0  # still far
 
 
 def test_the_wall_on_the_right_is_followed_through_the_tunnel():
-    near, far = WALL - 0.08, WALL + 0.08
-    assert along_wall(wall((-0.5, 1.0), -near))[1] > 0.1
-    assert along_wall(wall((-0.5, 1.0), -far))[1] < -0.1
-    corner = np.concatenate((wall((-0.5, 0.3), -WALL), wall((-0.2, 0.5), 0.3)[:, ::-1]))
-    assert along_wall(corner)[1] > 0.5
-    tunnel, inside = Tunnel(CALIBRATION), seen(view=floor(), points=wall((-0.5, 1.0), -0.25))
+    near, far = TUNNEL.WALL - 0.08, TUNNEL.WALL + 0.08
+    assert TUNNEL.along_wall(wall((-0.5, 1.0), -near))[1] > 0.1
+    assert TUNNEL.along_wall(wall((-0.5, 1.0), -far))[1] < -0.1
+    corner = np.concatenate((wall((-0.5, 0.3), -TUNNEL.WALL), wall((-0.2, 0.5), 0.3)[:, ::-1]))
+    assert TUNNEL.along_wall(corner)[1] > 0.5
+    tunnel, inside = TUNNEL.Tunnel(CALIBRATION), seen(view=floor(), points=wall((-0.5, 1.0), -0.25))
     commands = [tunnel.step(inside) for _ in range(7)]
     assert commands[0] is None and commands[-1] is not None
     for _ in range(5):
@@ -195,16 +192,16 @@ def test_the_wall_on_the_right_is_followed_through_the_tunnel():
 
 def test_the_way_into_the_car_park_and_the_free_bay():
     lines = [(WHITE, (x, 0.15), (x, 0.4)) for x in (0.2, 0.45)]
-    assert way_in(floor(*lane(), *lines), CALIBRATION) == pytest.approx(0.325, abs=0.01)
-    assert way_in(floor(*lane(), lines[0]), CALIBRATION) is None
-    parked = np.array([[0.0, SIDEWAYS], [0.05, SIDEWAYS + 0.1]])
-    assert free_side(parked) == -1 and free_side(-parked) == 1
+    assert PARK.way_in(floor(*lane(), *lines), CALIBRATION) == pytest.approx(0.325, abs=0.01)
+    assert PARK.way_in(floor(*lane(), lines[0]), CALIBRATION) is None
+    parked = np.array([[0.0, PARK.SIDEWAYS], [0.05, PARK.SIDEWAYS + 0.1]])
+    assert PARK.free_side(parked) == -1 and PARK.free_side(-parked) == 1
 
 
 def test_parking_goes_in_and_out_and_ends_where_it_turned_off():
-    parking, x, y, yaw, time, deepest = Parking(CALIBRATION), 0.0, 0.0, 0.0, 0.0, (0.0, 0.0)
+    parking, x, y, yaw, time, deepest = PARK.Parking(CALIBRATION), 0.0, 0.0, 0.0, 0.0, (0.0, 0.0)
     view = floor(*lane(), *((WHITE, (d, 0.15), (d, 0.4)) for d in (0.2, 0.45)))
-    parked = np.array([[0.0, SIDEWAYS]])
+    parked = np.array([[0.0, PARK.SIDEWAYS]])
     for _ in range(1200):
         command = parking.step(seen(view, points=parked, pose=(x, y, yaw), time=time))
         if parking.done:
@@ -213,23 +210,23 @@ def test_parking_goes_in_and_out_and_ends_where_it_turned_off():
         x, y = x + speed * math.cos(yaw) * 0.1, y + speed * math.sin(yaw) * 0.1
         yaw, time = yaw + turn * 0.1, time + 0.1
         deepest = max(deepest, (round(x, 2), round(y, 2)))
-    assert parking.done and deepest == pytest.approx((0.325 + SIDEWAYS, IN), abs=0.03)
+    assert parking.done and deepest == pytest.approx((0.325 + PARK.SIDEWAYS, PARK.IN), abs=0.03)
     assert (x, y, yaw) == pytest.approx((0.325, 0.0, 0.0), abs=0.03)
 
 
 def test_the_course_takes_its_missions_in_order_and_stands_at_the_red_line():
     line = floor(*lane(), (RED, (0.15, 0.1), (0.15, -0.1)))
-    course = Course(CALIBRATION, [TrafficLight, Bar, Tunnel, Finish])
-    assert course.mission == "traffic light"
-    assert course(seen(view=line))[0] > 0  # the start
-    course(seen(image=picture(((0, 255, 0), 0.5, 0.18, 0.08, 0.09, 0.09))))
-    course(seen())
-    assert course.mission == "bar"
+    course = LANE.Driver(CALIBRATION, [LIGHT.TrafficLight, BAR.Bar, TUNNEL.Tunnel, COURSE.Finish])
+    assert type(course.missions[0]) is LIGHT.TrafficLight
+    assert course.drive(seen(view=line))[0] > 0  # the start
+    course.drive(seen(image=picture(((0, 255, 0), 0.5, 0.18, 0.08, 0.09, 0.09))))
+    course.drive(seen())
+    assert type(course.missions[0]) is BAR.Bar
     for _ in range(7):  # the bar was open
-        course(seen(view=floor(), points=wall((-0.5, 1.0), -0.25)))
-    assert course.mission == "tunnel"
+        course.drive(seen(view=floor(), points=wall((-0.5, 1.0), -0.25)))
+    assert type(course.missions[0]) is TUNNEL.Tunnel
     for _ in range(5):
-        course(seen(points=wall((-0.5, 0.2), -0.25)))
-    assert course.mission == "finish"
-    assert course(seen(view=line)) == (0.0, 0.0)
-    assert course(seen()) == (0.0, 0.0)
+        course.drive(seen(points=wall((-0.5, 0.2), -0.25)))
+    assert type(course.missions[0]) is COURSE.Finish
+    assert course.drive(seen(view=line)) == (0.0, 0.0)
+    assert course.drive(seen()) == (0.0, 0.0)

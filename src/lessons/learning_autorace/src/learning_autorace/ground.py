@@ -1,15 +1,19 @@
-"""Lesson 1: from the camera's image to the ground seen from above."""
+"""From images and scans to the ground: its view from above, the lane's lines, the laser's hits."""
 
 from __future__ import annotations
 
 import math
 import reprlib
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
 import numpy as np
+import rospkg
+import rospy
 import yaml
+from sensor_msgs.msg import LaserScan
 
 # Bounds by key. The lane is searched for 0.2 m ahead, which the view has to include.
 LIMITS = {
@@ -20,6 +24,12 @@ LIMITS = {
 }
 TOP_LIMITS = {"clip_percent": (0.0, 20.0), "lane_width": (0.05, 1.0)}
 MOST_GAIN = 2.0  # so that an image of nothing bright stays dark
+YELLOW = (18, 90, 90), (38, 255, 255)  # hue 0..180, saturation, value: from, to
+WHITE = (0, 0, 140), (180, 60, 255)
+AHEAD, BAND = 0.20, 0.02  # m: where the lane is searched for, and over what depth
+WIDEST = 0.10  # m: anything wider is not a line along the lane
+NEAR_EXPECTED = 0.13  # m
+LASER_FORWARD = -0.032  # m, from base_footprint
 
 
 class CalibrationError(ValueError):
@@ -54,6 +64,15 @@ def load_calibration(path: Path) -> Calibration:
     for part, limits in LIMITS.items():
         found |= _numbers(path, values.get(part), limits, f"{part}.")
     return Calibration(**found)
+
+
+def calibration_of_parameter() -> Calibration:
+    """From the file in ~calibration, or config/camera.yaml; an error in it ends the program."""
+    usual = Path(rospkg.RosPack().get_path("learning_autorace")) / "config" / "camera.yaml"
+    try:
+        return load_calibration(Path(rospy.get_param("~calibration", str(usual))))
+    except CalibrationError as error:
+        sys.exit(f"{rospy.get_name()}: {error}")
 
 
 def _numbers(path: Path, values: object, limits: dict, part: str = "") -> dict[str, float]:
@@ -95,3 +114,55 @@ def compensate(view: np.ndarray, clip_percent: float) -> np.ndarray:
     """The view, brightened so that its brightest pixels become white, whatever the light."""
     bright = np.percentile(view.max(axis=2), 100 - clip_percent)
     return cv2.convertScaleAbs(view, alpha=min(255 / max(bright, 1.0), MOST_GAIN))
+
+
+@dataclass(frozen=True)
+class Lane:
+    """The lines' positions AHEAD of the base, m to the left; None: not seen."""
+
+    yellow: float | None
+    white: float | None
+
+    def centre(self, width: float) -> float | None:
+        """The middle between them, or half a lane beside the only one seen."""
+        middles = [line + side * width / 2 for line, side in ((self.yellow, -1), (self.white, 1))
+                   if line is not None]
+        return sum(middles) / len(middles) if middles else None
+
+
+def rows_at(calibration: Calibration, ahead: float, deep: float) -> slice:
+    """The view's rows between two distances ahead."""
+    top = round((calibration.far - ahead - deep / 2) * calibration.px_per_m)
+    return slice(max(top, 0), top + round(deep * calibration.px_per_m))
+
+
+def find_line(view: np.ndarray, colour: tuple, expected: float, calibration: Calibration
+              ) -> float | None:
+    """The position, m to the left, of the line of this colour that is nearest to `expected`."""
+    band = view[rows_at(calibration, AHEAD, BAND)]
+    hsv = cv2.cvtColor(band, cv2.COLOR_BGR2HSV)
+    there = cv2.inRange(hsv, *map(np.array, colour)).mean(axis=0) > 60
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], there, [False])).astype(int)))
+    found = []
+    for begin, end in edges.reshape(-1, 2):
+        middle = calibration.half_width - (begin + end) / 2 / calibration.px_per_m
+        if (1 < end - begin <= WIDEST * calibration.px_per_m
+                and abs(middle - expected) < NEAR_EXPECTED):
+            found.append(middle)
+    return min(found, key=lambda middle: abs(middle - expected), default=None)
+
+
+def find_lane(view: np.ndarray, expected: float, calibration: Calibration) -> Lane:
+    """Both lines of the lane whose middle is expected there, m to the left."""
+    half = calibration.lane_width / 2
+    return Lane(find_line(view, YELLOW, expected + half, calibration),
+                find_line(view, WHITE, expected - half, calibration))
+
+
+def laser_points(scan: LaserScan) -> np.ndarray:
+    """(N, 2) m, x ahead and y left of base_footprint: the laser's hits."""
+    ranges = np.array(scan.ranges)
+    angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
+    met = (ranges >= scan.range_min) & (ranges < scan.range_max)
+    ranges, angles = ranges[met], angles[met]
+    return np.stack((LASER_FORWARD + ranges * np.cos(angles), ranges * np.sin(angles)), 1)
