@@ -49,6 +49,13 @@ OF_ARGPARSE = (
 OF_SYSTEM = (
     "No such file or directory", "Permission denied", "Is a directory", "Not a directory",
     "File exists", "No space left on device", "Connection refused")
+# Of shell scripts that `python3 -m terminal_language` translates, as the terminal is a learner's.
+OF_SHELL = (
+    "rosed: {0} is not installed; {1} opens {2}", "rosed: {0} has no screen here; {1} opens {2}",
+    "rosed: {0} is not installed, nor is another editor; type: sudo apt-get install nano",
+    "rosed: {0} has no screen here, nor is another editor; type: sudo apt-get install nano",
+    "{0} {1} is in C++ and not built yet; type: make -C {2} build CPP=1")
+ABSENT = "src/workspace_needs/data/absent.yaml"
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works")  # its words
 
 
@@ -139,6 +146,8 @@ def python_texts() -> dict[str, list[str]]:
     found: dict[str, list[str]] = {text: ["Python's argparse"] for text in OF_ARGPARSE}
     found |= {text: ["the system"] for text in OF_SYSTEM}
     found |= {text: ["bullet_sim_ros/check/findings.py"] for text in OF_CHECK}
+    found |= {text: ["rosed-and-rosrun"] for text in OF_SHELL}
+    found |= {text: [ABSENT] for text in absences()}
     listed = subprocess.run(
         ["git", "-C", str(ROOT), "ls-files", "-co", "--exclude-standard", "src"],
         capture_output=True, text=True, check=True).stdout.split("\n")
@@ -155,6 +164,11 @@ def python_texts() -> dict[str, list[str]]:
     for text in kept():
         found.pop(text, None)
     return found
+
+
+def absences() -> list[str]:
+    """Why nobody has a package: rosdep, check and the build print that."""
+    return re.findall(r"^  why: (.*)", (ROOT / ABSENT).read_text(encoding="utf-8"), re.MULTILINE)
 
 
 def kept() -> list[str]:

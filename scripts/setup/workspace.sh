@@ -46,8 +46,8 @@ cpp_stand_ins() {
     package=$(basename "$(dirname "$(dirname "$file")")") program=$(basename "$file" .cpp)
     if [ ! -d "$root/devel/share/$package" ] || [ -e "$root/devel/lib/$package/$program" ] || ! grep -q 'int main(' "$file"; then continue; fi
     mkdir -p "$root/devel/lib/$package"
-    printf '#!/bin/sh\necho "%s %s is in C++ and not built yet; type: make -C %s build CPP=1" >&2\nexit 1\n' \
-      "$package" "$program" "$root" >"$root/devel/lib/$package/$program"
+    printf '#!/bin/sh\necho "%s %s is in C++ and not built yet; type: make -C %s build CPP=1" | { %s || cat; } >&2\nexit 1\n' \
+      "$package" "$program" "$root" "python3 -m terminal_language 2>/dev/null" >"$root/devel/lib/$package/$program"
     chmod +x "$root/devel/lib/$package/$program"
   done
 }

@@ -65,7 +65,7 @@ def test_a_known_plugin_works_and_a_tag_it_has_not_is_told(check):
     assert code == 0
     assert "works         plugin p (libgazebo_ros_p3d.so)" in said
     assert ("(libgazebo_ros_p3d.so): <framName> is ignored, as by Gazebo: the plugin has no such "
-            "tag; did you mean <frameName>?") in said
+            "tag (did you mean <frameName>?)") in said
 
 
 def test_a_missing_mesh_and_broken_xml_are_problems(check):
@@ -219,10 +219,10 @@ def test_nothing_to_check_and_a_wrong_launch_file(capsys):
     assert main(["no_such_package"]) == 2
     assert "check: no_such_package: no such file or package" in capsys.readouterr().err
     assert main(["learning_topic", "0curse.launch"]) == 1
-    assert ("not there; did you mean 0course.launch?; there are: 0course.launch"
+    assert ("not there (did you mean 0course.launch?); there are: 0course.launch"
             in capsys.readouterr().out)
     assert main(["learning_topik"]) == 2
-    assert "package; did you mean learning_topic?; try" in capsys.readouterr().err
+    assert "package (did you mean learning_topic?); try" in capsys.readouterr().err
     assert not Path("no_such_package").exists()
 
 
@@ -238,8 +238,8 @@ wheel: {type: velocity_controllers/JointVelocityControler, joint: j}""")
     assert code == 1
     assert "works         controller /r/state (joint_state_controller/JointStateController" in said
     assert ("NOT THERE     controller /r/wheel (velocity_controllers/JointVelocityControler): "
-            "there is no such type of controller here; did you mean velocity_controllers/JointVeloc"
-            "ityController?") in said
+            "there is no such type of controller here (did you mean velocity_controllers/JointVeloc"
+            "ityController?)") in said
     assert "NOT THERE     controller /r/arm (my_things/Controller)" in said
     assert "their_things" not in said
 

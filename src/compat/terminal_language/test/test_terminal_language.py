@@ -18,7 +18,7 @@ CATALOGUE = Catalogue({
     "": "header", "the line is lost": "线丢了", "no such file": "没有这个文件",
     "{0} has no {1}": "{0} 没有{1}", "{0} has no joint called {1}": "{0} 没有名为 {1} 的关节",
     "give one of: {0}": "请从中选一个：{0}", "first {0}, then {1}": "{1} 之前先 {0}",
-    "not translated yet": "", "; did you mean {0}?": "；是不是 {0}？", "no {0} here": "没有 {0}",
+    "not translated yet": "", "(did you mean {0}?)": "（是不是 {0}？）", "no {0} here": "没有 {0}",
     "Error: no {0} here": "Error: no {0} here"})
 
 
@@ -50,18 +50,32 @@ def test_only_our_programs_are_translated(words, ours):
     ("the line is lost", "线丢了"),
     ("\r\x1b[33m[WARN] [12.3, 4.5]: the line is lost\x1b[0m\n",
      "\r\x1b[33m[WARN] [12.3, 4.5]: 线丢了\x1b[0m\n"),
-    ("arm has no grip", "arm 没有grip"), ("arm has no joint called a b", "arm 没有名为 a b 的关节"),
+    ("arm has no grip", "arm 没有 grip"),
+    ("arm has no joint called a b", "arm 没有名为 a b 的关节"),
     ("check: a.world: no such file; give one of: b, c",
      "check: a.world: 没有这个文件; 请从中选一个：b, c"),
     ("give one of: the line is lost", "请从中选一个：线丢了"), ("first a, then b", "b 之前先 a"),
     ("the line is lost\nx\n  no such file\n", "线丢了\nx\n  没有这个文件\n"),
     ("[gzclient] the line is lost", "[gzclient] 线丢了"),
-    ("no x here; did you mean y?; no such file", "没有 x; 是不是 y？; 没有这个文件"),
+    ("no x here (did you mean y?); no such file", "没有 x（是不是 y？）; 没有这个文件"),
+    ("arm has no no such file", "arm 没有没有这个文件"), ("线 has no 3", "线 没有 3"),
     ("no such file (3)", "没有这个文件 (3)"),
     ("Error: no x here", "Error: no x here"), ('  <link name="no such file"/>\n',) * 2,
     ("not translated yet", "not translated yet"), ("", ""), ("\n", "\n"), ("what?", "what?")])
 def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
     assert CATALOGUE.translate(english) == chinese
+
+
+@pytest.mark.parametrize(("english", "chinese"), [
+    ("rosdep: compressed_image_transport: Debian 13 has it, Debian 12 does not",
+     "rosdep: compressed_image_transport: Debian 13 有，Debian 12 没有"),
+    ("rosdep: rosserial (for x): not in Debian; the simulator's sensors publish what a driver "
+     "would", "rosdep: rosserial (for x): Debian 里没有；驱动该发布的消息，由仿真器的传感器发布"),
+    ("gz: Unable to find file 'a.sdf'", "gz: 找不到文件 'a.sdf'"),
+    ("check: x: no such file or package (did you mean y?); try `rospack list`, or give a path",
+     "check: x: 没有这个文件或包（是不是 y？）；试试 `rospack list`，或给出路径")])
+def test_the_shipped_catalogue_has(english, chinese):
+    assert read_catalogue("zh_CN").translate(english) == chinese
 
 
 def test_data_with_many_colons_are_written_as_they_are():

@@ -213,7 +213,7 @@ def test_unknown_elements_are_one_warning_each(load, caplog, tmp_path):
     assert [record.getMessage() for record in caplog.records] == [
         f"{file}: world 'default': <elevator> is not known, left out",
         f"{file}: world 'default', model 'm', link 'link': <colision> is not known, "
-        "left out; did you mean <collision>?"]
+        "left out (did you mean <collision>?)"]
 
 
 def test_world_plugins_are_kept(load):

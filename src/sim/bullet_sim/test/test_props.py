@@ -106,7 +106,7 @@ def test_a_world_loads_and_steps(name, caplog):
 
 def test_a_world_that_is_not_there_is_answered_with_those_that_are():
     with pytest.raises(ResourceNotFound, match=(
-            r"worlds/shape.world not found \(searched: .*\); did you mean shapes.world\?; "
+            r"worlds/shape.world not found \(searched: .*\) \(did you mean shapes.world\?\); "
             r"there are: .*worlds/empty.world, .*worlds/shapes.world")):
         RESOURCES.find_world("worlds/shape.world")
 

@@ -200,7 +200,7 @@ def test_a_missing_file(tmp_path):
 
 def test_a_mistyped_file_is_answered_with_the_nearest(tmp_path):
     (tmp_path / "turtlebot.xacro").touch()
-    with pytest.raises(FormatError, match=r"does not exist; did you mean turtlebot\.xacro\?$"):
+    with pytest.raises(FormatError, match=r"does not exist \(did you mean turtlebot\.xacro\?\)$"):
         expand(tmp_path / "turtelbot.xacro")
 
 

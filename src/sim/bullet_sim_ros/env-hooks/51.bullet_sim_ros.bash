@@ -15,12 +15,13 @@ if [ -r /usr/share/bash-completion/completions/roscd ]; then
     fi
     for editor in nano vim vi editor; do
       if command -v "$editor" > /dev/null; then
-        echo "rosed: $1 $why; $editor opens $file" >&2
+        _rosed_says "rosed: $1 $why; $editor opens $file"
         "$editor" "$file"
         return
       fi
     done
-    echo "rosed: $1 $why, nor is another editor; type: sudo apt-get install nano" >&2
+    _rosed_says "rosed: $1 $why, nor is another editor; type: sudo apt-get install nano"
     return 1
   }
+  _rosed_says() { { python3 -m terminal_language <<< "$1" 2> /dev/null || echo "$1"; } >&2; }
 fi

@@ -67,4 +67,4 @@ def test_every_registered_type_has_what_a_controller_needs():
         assert issubclass(made, registry.Controller), kind
         assert made.__doc__, kind
     assert registry.hint("effort_controllers/JointPositonController") == (
-        "; did you mean effort_controllers/JointPositionController?")
+        " (did you mean effort_controllers/JointPositionController?)")

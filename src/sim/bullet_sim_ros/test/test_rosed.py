@@ -36,6 +36,12 @@ def test_a_file_of_a_package_is_opened(bash, editor, said):
     assert done.stderr == said.format(FILE)
 
 
+def test_the_line_is_chinese_in_a_chinese_terminal(bash):
+    done = bash("rosed bullet_sim_ros package.xml", EDITOR="no-such",
+                LANGUAGE="zh_CN", LC_ALL="C.UTF-8")
+    assert done.stderr == f"rosed：没有安装 no-such；改用 nano 打开 {FILE}\n"
+
+
 def test_without_editor_set_it_is_vim(bash, tmp_path):
     (tmp_path / "vim").symlink_to(tmp_path / "nano")
     assert bash("rosed bullet_sim_ros package.xml").stdout == f"nano {FILE}\n"

@@ -73,14 +73,15 @@ class Tables:
         if DEBIAN_NAME.fullmatch(key) and key in self._apt_names:
             return Answer(DEBIAN, (key,))
         if others := self._other_releases(key):
-            return Answer(ABSENT, why=f"{others}, {self._named(self._release)} does not")
+            here = self._named(self._release)
+            return Answer(ABSENT, why=f"{others[0]} has it, {here} does not" if len(others) == 1
+                          else f"{' and '.join(others)} have it, {here} does not")
         return Answer(UNKNOWN, why=self._nobody(key))
 
-    def _other_releases(self, key: str) -> str:
-        """`Debian 13 has it`, or nothing if no other release has `key` either."""
+    def _other_releases(self, key: str) -> list[str]:
+        """Other releases that have `key`, such as `Debian 13`."""
         found = self.debian.get(key, {}).get("debian", {})
-        names = [self._named(name) for name, packages in found.items() if packages is not None]
-        return " and ".join(names) + (" has it" if len(names) == 1 else " have it") if names else ""
+        return [self._named(name) for name, packages in found.items() if packages is not None]
 
     @staticmethod
     def _named(release: str) -> str:

@@ -18,6 +18,9 @@ JOINTS = re.compile(r"(: |; )")
 IN_BRACKETS = re.compile(r"(.+)( \([^()]*\))", re.DOTALL)  # such as argparse's default
 MOST_PARTS = 8  # of a text between colons and semicolons; more are data, not a message
 WORD = re.compile(r"[A-Za-z]{2,}")
+# Between a Chinese character and a Latin letter or digit, where a value begins or ends.
+UNSPACED = re.compile(r"(?<=[\u4e00-\u9fff])\0+(?=[A-Za-z0-9])"
+                      r"|(?<=[A-Za-z0-9])\0+(?=[\u4e00-\u9fff])")
 FEWEST_WORDS = 3  # of what stays English; what has fewer is a frame for other texts
 LONGEST = 1000  # characters of a line
 DEPTH = 4  # of texts within texts
@@ -52,8 +55,9 @@ class Sentence:
         return dict(zip(map(int, self._parts[1::2]), (*values, text[at:end]), strict=True))
 
     def filled(self, values: dict[int, str]) -> str:
-        """The translation with these values."""
-        return PLACE.sub(lambda place: values[int(place[1])], self.translation)
+        """The translation with these values, Latin ones with spaces beside Chinese."""
+        marked = PLACE.sub(lambda place: f"\0{values[int(place[1])]}\0", self.translation)
+        return UNSPACED.sub(" ", marked).replace("\0", "")
 
 
 class Catalogue:
@@ -80,21 +84,21 @@ class Catalogue:
     def _around(self, text: str, depth: int = DEPTH) -> str | None:
         before, inner, after = AROUND.fullmatch(text).groups()
         found = self._message(inner, depth) if inner else None
-        return None if found is None else before + found + after
+        if found is None:
+            return None
+        # A full-width bracket has its space within.
+        return (before.rstrip(" ") if found.startswith("（") else before) + found + after
 
     def _message(self, text: str, depth: int) -> str | None:
         """The translation of the text, or of its parts between colons and semicolons."""
-        found = self._sentence(text, depth)
-        if found is None and (ending := IN_BRACKETS.fullmatch(text)):
-            head = self._sentence(ending[1], depth)
-            found = None if head is None else head + ending[2]
+        found = self._clause(text, depth)
         parts = JOINTS.split(text)
         if found is not None or not 1 < len(parts) < 2 * MOST_PARTS:
             return found
         told, at, any_found = "", 0, False
         while at < len(parts):
             for end in range(len(parts), at, -2):
-                found = self._sentence("".join(parts[at:end]), depth)
+                found = self._clause("".join(parts[at:end]), depth)
                 if found is not None:
                     break
             any_found = any_found or found is not None
@@ -102,6 +106,15 @@ class Catalogue:
             told += parts[end] if end < len(parts) else ""
             at = end + 1
         return told if any_found else None
+
+    def _clause(self, text: str, depth: int) -> str | None:
+        """The translation of a text, or of what stands before its brackets, and of those."""
+        found = self._sentence(text, depth)
+        if found is None and (ending := IN_BRACKETS.fullmatch(text)):
+            head = self._sentence(ending[1], depth)
+            found = None if head is None else head + (
+                self._around(ending[2], depth - 1) or ending[2])
+        return found
 
     def _sentence(self, text: str, depth: int) -> str | None:
         if text in self._exact or depth == 0:

@@ -55,7 +55,8 @@ def _below(tree: Mapping[str, Any], space: str, tables: Tables, others: set[str]
         elif path not in others:
             near = get_close_matches(name, folders if is_folder else entries, 1, 0.75)
             if near or not is_folder:
-                yield f"{path} (did you mean {near[0]}?)" if near else path
+                hint = f" (did you mean {near[0]}?)" if near else ""
+                yield path + hint
 
 
 def _useless(path: str, value: Any, entry: Parameter) -> Iterator[str]:

@@ -41,7 +41,7 @@ def prefixed(text: str, kind: type[SimulationError] = FormatError) -> Iterator[N
 def did_you_mean(word: str, known: Iterable[str], alike: float, form: str = "{}") -> str:
     """The end of a line: the nearest of the known words, if it is at least so similar (0..1)."""
     close = difflib.get_close_matches(word, known, 1, alike)
-    return f"; did you mean {form.format(close[0])}?" if close else ""
+    return f" (did you mean {form.format(close[0])}?)" if close else ""
 
 
 def nearest_file(path: Path | str) -> str:
