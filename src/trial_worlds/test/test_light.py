@@ -46,7 +46,7 @@ def test_a_dimmer_world_differs_in_nothing_but_its_light(tmp_path):
 
 @pytest.fixture(scope="module")
 def renderer():
-    opened = open_renderer("egl")
+    opened = open_renderer()
     yield opened
     opened.close()
 

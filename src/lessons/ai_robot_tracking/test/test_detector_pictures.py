@@ -31,7 +31,7 @@ RADIUS, LENGTH, AWAY = 0.2, 0.6, 3.0  # m
 
 @pytest.fixture(scope="module")
 def renderer():
-    found = open_renderer("egl")
+    found = open_renderer()
     yield found
     found.close()
 

@@ -31,7 +31,7 @@ def test_it_is_small_and_knows_its_classes(model):
 
 
 def test_it_finds_things_in_worlds_that_it_never_saw(model):
-    renderer = open_renderer("egl")
+    renderer = open_renderer()
     first = TEST_FIRST + 100_000  # of no training, and of no report
     judged = judge(model, [draw_picture(renderer, seed)
                            for seed in range(first, first + PICTURES)])

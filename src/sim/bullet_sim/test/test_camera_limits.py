@@ -18,9 +18,9 @@ from bullet_sim.world import World
 GOOD = CameraDescription(width=8, height=6, near=0.1, far=10.0)
 
 
-@pytest.fixture(scope="module", params=["egl", "tiny"])
-def renderer(request):
-    opened = open_renderer(request.param)
+@pytest.fixture(scope="module")
+def renderer():
+    opened = open_renderer()
     yield opened
     opened.close()
 
@@ -48,7 +48,7 @@ def test_a_picture_that_is_too_large_is_drawn_smaller(renderer, caplog, width, h
 
 
 def test_memory_of_pictures_is_given_back():
-    drawing = open_renderer("egl")
+    drawing = open_renderer()
     eye = camera(drawing)
     first = eye.sample().rgb
     assert drawing._targets

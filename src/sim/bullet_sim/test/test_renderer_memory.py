@@ -45,7 +45,7 @@ def allocated():
 
 @pytest.fixture
 def renderer():
-    opened = open_renderer("egl")
+    opened = open_renderer()
     yield opened
     opened.close()
 
@@ -74,7 +74,7 @@ def test_what_is_drawn_in_leaves_no_holes_in_the_heap(renderer):
     if renderer._quality != Quality():
         pytest.skip("the driver of a graphics card has memory of its own")
     script = (
-        "from test_renderer_memory import *; opened = open_renderer('egl');"
+        "from test_renderer_memory import *; opened = open_renderer();"
         "before = blocks()[0]; opened.draw(Scene().frozen(), VIEW); after = blocks()[0];"
         "assert after - before < PICTURE / 4, (before, after);"
         "import numpy; piece = numpy.empty(8 << 20, numpy.uint8);"

@@ -22,12 +22,12 @@ class Ending(unittest.TestCase):
         self.folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.folder)
 
-    def start(self, *arguments):
+    def start(self, *arguments, **environment):
         self.log = os.path.join(self.folder, "log.txt")
         with open(self.log, "wb") as log:
             process = subprocess.Popen(
                 ["rosrun", "gazebo_ros", "gzserver", *arguments, "__name:=ending_gazebo"],
-                stdout=log, stderr=subprocess.STDOUT)
+                stdout=log, stderr=subprocess.STDOUT, env=os.environ | environment)
         self.addCleanup(process.kill)
         return process
 
@@ -65,6 +65,15 @@ class Ending(unittest.TestCase):
             self.assertEqual(len(lines), 1, lines)
             self.assertIn(world, lines[0])
             self.assertIn(reason, lines[0])
+
+    def test_without_opengl_a_world_with_a_camera_is_one_line_and_exit_code_1(self):
+        world = os.path.join(os.path.dirname(os.path.abspath(__file__)), "camera_robot.world")
+        process = self.start(world, GLCONTEXT_LINUX_LIBGL="/nowhere/libGL.so")
+        self.assertEqual(process.wait(RUN_LIMIT), 1)
+        lines = [line for line in self.output().splitlines() if "[FATAL]" in line]
+        self.assertEqual(len(lines), 1, self.output())
+        for said in ("/nowhere/libGL.so", "sudo apt-get install libegl1"):
+            self.assertIn(said, lines[0])
 
     def test_a_time_to_start_at_that_is_none(self):
         process = self.start("--initial_sim_time", "-5")

@@ -4,9 +4,10 @@ from types import SimpleNamespace
 
 import pytest
 
+from bullet_sim_ros.loop import IDLE, wait
 from bullet_sim_ros.pacer import Pacer
 from bullet_sim_ros.scheduler import Scheduler
-from bullet_sim_ros.simulation import IDLE, Simulation
+from bullet_sim_ros.simulation import Simulation
 
 
 class ImpatientMailbox:
@@ -31,7 +32,7 @@ def test_however_slow_time_runs_the_loop_soon_sees_that_it_is_to_end(factor):
     simulation.mailbox = ImpatientMailbox(simulation)
     simulation._stop_requested = False
     simulation.pacer.ahead(0.0)
-    simulation._wait()
+    wait(simulation)
     assert max(simulation.mailbox.waits) <= IDLE
 
 
@@ -49,7 +50,7 @@ def test_what_is_due_at_different_rates_is_done_when_its_time_has_come_on_the_wa
     for rate_hz in (100.0, 30.0):
         simulation.scheduler.add(rate_hz, lambda: done.append(wall.now - world.tick / 1000))
     for _ in range(100):
-        simulation._wait()
+        wait(simulation)
         world.tick = simulation.scheduler.next_tick()
         simulation.scheduler.run()
     assert done == pytest.approx([done[0]] * len(done), abs=1e-6)
@@ -75,7 +76,7 @@ def test_triggers_that_come_while_the_loop_waits_cost_no_time(rate_hz):
     simulation.scheduler.add(100.0, lambda: None)
     simulation.scheduler.add(0.0, triggered.clear, lambda: bool(triggered))
     while wall.now < 60.0:
-        simulation._wait()
+        wait(simulation)
         world.tick = simulation.scheduler.next_tick()
         simulation.scheduler.run()
     assert world.tick / 1000 == pytest.approx(10.0, abs=0.03)

@@ -94,7 +94,7 @@ class _OurDrawing:
 
     def __init__(self, world: World):
         self._world = world
-        self._renderer = open_renderer("egl")
+        self._renderer = open_renderer()
         self.name = self._renderer.name
 
     def draw(self, view: CameraView) -> np.ndarray:

@@ -29,7 +29,7 @@ class DrawingThread:
         self._reported = False
 
     def renderer(self) -> Renderer:
-        """The renderer; SimulationError if opening it failed. To be called in the loop's thread.
+        """The renderer; NoRenderer if opening it failed. To be called in the loop's thread.
 
         Only that thread may log: while it loads a body, it silences the terminal because of
         PyBullet's output, and would swallow the log lines of another thread, too.

@@ -18,8 +18,9 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.formats.loading import load_world
 from bullet_sim.formats.resources import Resources
 from bullet_sim.physics.parameter_bounds import possible_physics
+from bullet_sim.rendering.renderer import NoRenderer
 from bullet_sim.world import World
-from bullet_sim_ros import names, topic_faults
+from bullet_sim_ros import loop, names, topic_faults
 from bullet_sim_ros.lockstep import split
 from bullet_sim_ros.log_bridge import forward_core_log
 from bullet_sim_ros.metrics import MetricsTopic
@@ -36,7 +37,7 @@ from bullet_sim_ros.state_log import StateLog
 from bullet_sim_ros.state_topics import StateTopics
 
 
-def open_network(simulation: Simulation, resources: Resources, parameters: NodeParameters) -> None:
+def open_network(simulation: Simulation, parameters: NodeParameters) -> None:
     """Open all topics and services, unless the parameter `~enable_ros_network` is false."""
     if not parameters.enable_ros_network:
         rospy.loginfo("ROS gazebo topics/services are disabled")
@@ -44,7 +45,7 @@ def open_network(simulation: Simulation, resources: Resources, parameters: NodeP
     StateTopics(simulation, parameters.pub_state_frequency)
     MetricsTopic(simulation)
     simulation.each_turn.append(SceneTopic(simulation.world).update)
-    offer_services(simulation, resources)
+    offer_services(simulation)
     topic_faults.watch(simulation.senders)
 
 
@@ -95,7 +96,7 @@ def _seed(text: str) -> int:
     return int(text)
 
 
-def open_world(options: argparse.Namespace, resources) -> World:
+def open_world(options: argparse.Namespace, resources: Resources) -> World:
     """The world that the command line names; ResourceNotFound or FormatError of its file."""
     path = resources.find_world(options.world)
     description = load_world(path, resources)
@@ -144,9 +145,13 @@ def start(options: argparse.Namespace) -> Simulation | None:
             rospy.logfatal("parameter %s is %r, which is not a topic name; for example /cmd_vel",
                            rospy.resolve_name(name), topics)
             return None
-    simulation = Simulation(world, parameters)
+    try:
+        simulation = Simulation(world, parameters, resources)
+    except NoRenderer as error:
+        rospy.logfatal("%s", error)
+        return None
     end_by_signals(simulation.stop)  # before its topics and services are visible
-    open_network(simulation, resources, parameters)
+    open_network(simulation, parameters)
     if parameters.state_log:
         try:
             StateLog(simulation, Path(parameters.state_log))
@@ -184,7 +189,7 @@ def main() -> int:
     gc.freeze()  # modules and world are permanent: the collector need not scan them again
     ended = end_before_topics(simulation.stop)
     try:
-        simulation.run(options.iters)
+        loop.run(simulation, options.iters)
     finally:
         ended.set()
         shut_down()

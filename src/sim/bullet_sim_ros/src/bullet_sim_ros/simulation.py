@@ -1,4 +1,4 @@
-"""The simulated world together with its ROS side, and the loop that drives both."""
+"""The simulated world together with its ROS side: what the loop (`loop.py`) drives."""
 
 from collections import Counter
 from collections.abc import Callable
@@ -7,8 +7,8 @@ import rospy
 from rosgraph_msgs.msg import Clock
 
 from bullet_sim.description import ModelDescription
+from bullet_sim.formats.resources import Resources
 from bullet_sim.model import Model
-from bullet_sim.physics.engine import EngineError
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
@@ -24,14 +24,13 @@ from bullet_sim_ros.real_time_factor import RealTimeFactorMonitor
 from bullet_sim_ros.rospy_patches import set_time
 from bullet_sim_ros.scheduler import Scheduler
 
-IDLE = 0.05  # s, wall clock: how long to wait for a call before checking for shutdown
-
 
 class Simulation:
     """Owned by the loop's thread; other threads reach it through the mailbox."""
 
-    def __init__(self, world: World, parameters: NodeParameters):
+    def __init__(self, world: World, parameters: NodeParameters, resources: Resources):
         self.world = world
+        self.resources = resources  # the files of models that are spawned
         self.mailbox = Mailbox()
         self.scheduler = Scheduler(world)
         self.pacer = Pacer()
@@ -47,7 +46,7 @@ class Simulation:
         self._plugins: dict[str, list[PluginContext]] = {}
         world.each_removal.append(self._close_plugins)
         self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10)
-        self.scheduler.add(parameters.pub_clock_frequency, self._publish_clock)
+        self.scheduler.add(parameters.pub_clock_frequency, self.publish_clock)
         self.set_pace()
         self.each_turn: list[Callable[[], None]] = []  # called by the loop, paused or not
         self.state_calls: Counter[str] = Counter()  # get_model_state calls by model: header.seq
@@ -56,67 +55,22 @@ class Simulation:
         self._world_plugins = load_world_plugins(self._host)
         self.lockstep.listen()
 
-    # --- the loop
-
-    def run(self, iterations: int = 0) -> None:
-        """Step until `stop` or ROS shutdown, or for `iterations` steps (0: no limit)."""
-        self._publish_clock()
-        left = iterations or float("inf")
-        while left and not self._stopped():
-            self._wait()
-            try:
-                for function in self.each_turn:
-                    function()
-                if not self.world.paused and not self._stopped():
-                    left -= self._advance(left)
-            except EngineError as error:  # from a topic that publishes poses
-                self.world.delete_lost_models(error)
+    # --- for the loop
 
     def stop(self) -> None:
         """End the loop soon; may be called by a signal handler."""
         self._stop_requested = True
 
-    def _stopped(self) -> bool:
+    def stopped(self) -> bool:
+        """Whether the loop is to end."""
         return self._stop_requested or rospy.is_shutdown()
 
-    def _wait(self) -> None:
-        """Answer calls until the next tick is due by the wall clock; at least the pending calls."""
-        if self.world.paused:
-            self.mailbox.run_pending(IDLE)
-            self._restart_pace()
-            return
-        while (ahead := self.pacer.ahead(self._due())) > 0 and not self._stopped():
-            self.mailbox.run_pending(min(ahead, IDLE))
-            if self.world.paused:
-                return
-        self.mailbox.run_pending()
-
-    def _due(self) -> float:
-        """Simulated time, s, of the next scheduled job."""
+    def due(self) -> float:
+        """Simulated time, s, of the next scheduled task."""
         return self.scheduler.next_tick() * self.world.timestep
 
-    def _advance(self, most: float) -> int:
-        """Step to the next scheduled jobs and run them; returns the number of steps taken."""
-        world = self.world
-        steps = int(min(self.scheduler.next_tick() - world.tick, most))
-        world.step(steps)
-        with world.profiler.measure("plugins"):
-            self.scheduler.run()
-        with world.profiler.measure("lockstep"):
-            self.lockstep.wait(self._stopped)
-        self.real_time_factor.update(world.time, self.pacer.factor)
-        return steps
-
-    def step(self) -> None:
-        """Take one step and run the jobs due then; afterwards pause and publish /clock."""
-        self.world.paused = False
-        try:
-            self._advance(1)
-        finally:
-            self.world.paused = True
-        self._publish_clock()
-
-    def _publish_clock(self) -> None:
+    def publish_clock(self) -> None:
+        """Publish the simulated time, which this process's log lines have, too."""
         now = convert.stamp(self.world.time)
         set_time(now)
         self._clock.publish(Clock(now))
@@ -128,7 +82,7 @@ class Simulation:
         physics = self.world.description.physics
         self.pacer.factor = physics.max_step_size * physics.real_time_update_rate
         self.scheduler.set_pace(self.pacer.factor)
-        self._restart_pace()
+        self.restart_pace()
 
     def configure_physics(self, **changes) -> None:
         """Change the world's physics; rates and pace follow the new step."""
@@ -136,7 +90,8 @@ class Simulation:
         self.scheduler.restart()
         self.set_pace()
 
-    def _restart_pace(self) -> None:
+    def restart_pace(self) -> None:
+        """Count wall time from here: after a pause, a reset or a change of pace."""
         self.pacer.restart()
         self.real_time_factor.restart(self.world.time)
 
@@ -167,8 +122,8 @@ class Simulation:
         for contexts in (*self._plugins.values(), self._world_plugins):
             for context in contexts:
                 context.reset()
-        self._publish_clock()
-        self._restart_pace()
+        self.publish_clock()
+        self.restart_pace()
 
     def sensors(self) -> list[PluginContext]:
         """The plugins of sensors."""

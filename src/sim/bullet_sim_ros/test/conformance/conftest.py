@@ -17,6 +17,7 @@ from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.model import Model
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.world import World
+from bullet_sim_ros import loop
 from bullet_sim_ros.node import open_network
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters
@@ -43,8 +44,8 @@ class Bench:
         path = folder / "bench.world"
         path.write_text(world_text, encoding="utf-8")
         self.world = World(load_world(path, self.resources), seed=1)
-        self.simulation = Simulation(self.world, parameters)
-        open_network(self.simulation, self.resources, parameters)
+        self.simulation = Simulation(self.world, parameters, self.resources)
+        open_network(self.simulation, parameters)
 
     # --- what a user does
 
@@ -54,7 +55,7 @@ class Bench:
 
     def run_steps(self, count: int) -> None:
         """So many physics steps."""
-        self.simulation.run(count)
+        loop.run(self.simulation, count)
         self.simulation._drawing.settle()  # pictures that are still being drawn
 
     def spawn(self, text: str, pose: Pose = IDENTITY, name: str | None = None,

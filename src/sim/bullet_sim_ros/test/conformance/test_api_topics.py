@@ -5,6 +5,7 @@ import rospy
 from geometry_msgs.msg import Twist
 
 from bullet_sim.pose import Pose
+from bullet_sim_ros import loop
 
 ARM = """<model name="arm"><link name="base"/><link name="tip"><pose>0 0 1 0 0 0</pose></link>
   <joint name="root" type="fixed"><parent>world</parent><child>base</child></joint>
@@ -30,7 +31,7 @@ def test_state_topics_while_somebody_listens_and_time_runs(make_bench):
     assert links[0].twist[2].angular.z == pytest.approx(2, rel=0.01)
     bench.call("/gazebo/pause_physics")
     bench.simulation.mailbox.post(bench.simulation.stop)
-    bench.simulation.run()
+    loop.run(bench.simulation)
     assert (len(models), len(links)) == (5, 5)
 
 

@@ -64,4 +64,4 @@ def test_a_full_disk_ends_the_simulation_with_one_line(bench, caplog):
     bench.call("/gazebo/get_model_state", model_name="box")
     bench.run(0.2)
     assert caplog.text.count("/dev/full: No space left on device: the simulation ends") == 1
-    assert bench.simulation._stopped()
+    assert bench.simulation.stopped()

@@ -6,9 +6,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from bullet_sim.description import ModelDescription, WorldDescription
+from bullet_sim.formats.resources import Resources
 from bullet_sim.meshes.images import warn_if_unreadable
 from bullet_sim.pose import IDENTITY
 from bullet_sim.world import World
+from bullet_sim_ros import loop
 from bullet_sim_ros.interface import APPROXIMATED
 from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.plugin_host.logged_parameters import defaults
@@ -89,11 +91,11 @@ def _try(world: World, parameters: Mapping[str, object],
     register_plugins()
     with without_master() as graph:
         graph.parameters.update(parameters)
-        simulation = Simulation(world, NodeParameters(enable_ros_network=False))
+        simulation = Simulation(world, NodeParameters(enable_ros_network=False), Resources())
         try:
             fill(simulation)
             simulation.pacer.factor = 0.0
-            simulation.run(STEPS)
+            loop.run(simulation, STEPS)
             for path in _textures(world):
                 warn_if_unreadable(path)
         finally:

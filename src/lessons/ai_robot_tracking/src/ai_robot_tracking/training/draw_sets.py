@@ -16,9 +16,9 @@ Shard = tuple[Path, range]  # a file, and the seeds of its images
 
 
 def open_drawing() -> Renderer:
-    """The renderer that cameras normally use; TrainingError without it: the fallback differs."""
+    """The renderer of all cameras; TrainingError without it."""
     try:
-        return open_renderer("egl")
+        return open_renderer()
     except SimulationError as error:
         raise TrainingError(f"{error}; images are rendered in .venv: rosrun ai_robot_tracking "
                        "train_detector.py ...") from error

@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 from bullet_sim.description import SENSOR_TYPES, SensorDescription
 from bullet_sim.errors import did_you_mean
 from bullet_sim.model import Model
+from bullet_sim.rendering.renderer import NoRenderer
 from bullet_sim_ros.errors import format_error
 from bullet_sim_ros.interface import Row, read_interface, rows_by_name
 from bullet_sim_ros.plugin_host.context import PluginContext
@@ -34,7 +35,10 @@ def plugin(*filenames: str) -> Callable[[type], type]:
 
 
 def load_plugins(host: PluginHost, model: Model) -> list[PluginContext]:
-    """All plugins of a model, its sensors and visuals; one that fails is one error line."""
+    """All plugins of a model, its sensors and visuals; one that fails is one error line.
+
+    NoRenderer if it has a camera, and none can be drawn on this machine.
+    """
     contexts = [
         PluginContext(host, model, description) for description in model.description.plugins
     ]
@@ -47,7 +51,16 @@ def load_plugins(host: PluginHost, model: Model) -> list[PluginContext]:
         for visual in link.description.visuals:
             contexts += [PluginContext(host, model, made, link=link, visual=visual)
                          for made in visual.plugins]
-    return [context for context in contexts if _load(context)]
+    loaded = []
+    try:
+        for context in contexts:
+            if _load(context):
+                loaded.append(context)
+    except NoRenderer:
+        for context in loaded:
+            context.close()
+        raise
+    return loaded
 
 
 def load_world_plugins(host: PluginHost) -> list[PluginContext]:
@@ -68,6 +81,9 @@ def _load(context: PluginContext) -> bool:
         return False
     try:
         made(context)
+    except NoRenderer:
+        context.close()
+        raise
     except Exception as error:
         log.error("%s is not loaded: %s", context.describe(), format_error(error))
         context.close()

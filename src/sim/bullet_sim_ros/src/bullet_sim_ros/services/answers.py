@@ -1,14 +1,13 @@
 """How a service call reaches the loop and how its failure comes back."""
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import rospy
 
 from bullet_sim.errors import SimulationError
 from bullet_sim_ros.errors import format_error
-from bullet_sim_ros.mailbox import Closed, Mailbox
+from bullet_sim_ros.mailbox import Closed
 from bullet_sim_ros.simulation import Simulation
 
 Handler = Callable[[Simulation, Any, Any], None]
@@ -17,29 +16,6 @@ _registry: list[tuple[str, type, Handler]] = []
 
 class CallFails(Exception):
     """The call itself is to fail, so that the client sees a ServiceException."""
-
-
-def offer(mailbox: Mailbox, name: str, kind: type, handler: Callable[[Any, Any], None]) -> None:
-    """Advertise a service. `handler(request, response)` fills the response in the loop's thread."""
-    made = kind._response_class
-
-    def answer(request):
-        mailbox.announce(rospy.resolve_name(name), request)
-        response = made()
-        try:
-            mailbox.call(lambda: handler(request, response))
-        except (CallFails, Closed) as error:
-            raise rospy.ServiceException(str(error)) from None
-        except Exception as error:  # whatever a request does, the caller gets one line
-            message = format_error(error)
-            if "success" not in response.__slots__:
-                raise rospy.ServiceException(message) from None
-            response.success = False
-            response.status_message = message
-            rospy.logerr("%s", message)
-        return response
-
-    rospy.Service(name, kind, answer)
 
 
 def service(name: str, kind: type) -> Callable[[Handler], Handler]:
@@ -54,7 +30,29 @@ def service(name: str, kind: type) -> Callable[[Handler], Handler]:
 def offer_registered(simulation: Simulation) -> None:
     """Advertise all registered services."""
     for name, kind, handler in _registry:
-        offer(simulation.mailbox, name, kind, partial(handler, simulation))
+        _offer(simulation, name, kind, handler)
+
+
+def _offer(simulation: Simulation, name: str, kind: type, handler: Handler) -> None:
+    mailbox, made = simulation.mailbox, kind._response_class
+
+    def answer(request):
+        mailbox.announce(rospy.resolve_name(name), request)
+        response = made()
+        try:
+            mailbox.call(lambda: handler(simulation, request, response))
+        except (CallFails, Closed) as error:
+            raise rospy.ServiceException(str(error)) from None
+        except Exception as error:  # whatever a request does, the caller gets one line
+            message = format_error(error)
+            if "success" not in response.__slots__:
+                raise rospy.ServiceException(message) from None
+            response.success = False
+            response.status_message = message
+            rospy.logerr("%s", message)
+        return response
+
+    rospy.Service(name, kind, answer)
 
 
 def done(response, message: str) -> None:

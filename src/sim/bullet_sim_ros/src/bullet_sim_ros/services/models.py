@@ -10,12 +10,12 @@ from gazebo_msgs.srv import DeleteModel, SpawnModel
 from bullet_sim.description import ModelDescription, PluginDescription
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.loading import load_light, load_model
-from bullet_sim.formats.resources import Resources
 from bullet_sim.pose import IDENTITY
 from bullet_sim_ros import names
-from bullet_sim_ros.services.answers import CallFails, ServiceError, done, offer
+from bullet_sim_ros.services.answers import CallFails, ServiceError, done, service
 from bullet_sim_ros.services.lookup import find_model
 from bullet_sim_ros.services.states import is_turnless, spawn_pose
+from bullet_sim_ros.simulation import Simulation
 
 SPAWNED = "SpawnModel: Successfully spawned entity"
 TAKEN = "SpawnModel: Failure - entity already exists."
@@ -23,48 +23,54 @@ UNKNOWN_PACKAGE = "urdf reference package name does not exist"
 URDF_ROOT = re.compile(r"<robot[\s>/]")
 
 
-def offer_model_services(simulation, resources: Resources) -> None:
-    """spawn_urdf_model, spawn_sdf_model, delete_model."""
+@service(names.SPAWN_SDF_MODEL, SpawnModel)
+def spawn(simulation: Simulation, request, response) -> None:
+    """A model or light from SDF or URDF text.
 
-    def spawn(request, response):
-        name = request.model_name
-        pose = spawn_pose(simulation.world, request)
-        light = load_light(request.model_xml, resources, name or None)
-        if light is not None:
-            if light.name in simulation.world.scene.lights:
-                raise ServiceError(TAKEN)
-            simulation.world.scene.add_light(light)
-            done(response, SPAWNED)
-            return
-        description = load_model(request.model_xml, resources, name or None)
-        if description.name in simulation.world.models:
+    ServiceError if the name is taken, FormatError if the text is wrong.
+    """
+    world, name = simulation.world, request.model_name or None
+    pose = spawn_pose(world, request)
+    light = load_light(request.model_xml, simulation.resources, name)
+    if light is not None:
+        if light.name in world.scene.lights:
             raise ServiceError(TAKEN)
-        if is_turnless(request.initial_pose):
-            description = dataclasses.replace(description, pose=IDENTITY)
-        if request.robot_namespace:
-            description = with_namespace(description, request.robot_namespace)
-        simulation.spawn(description, pose, description.name)
+        world.scene.add_light(light)
         done(response, SPAWNED)
+        return
+    description = load_model(request.model_xml, simulation.resources, name)
+    if description.name in world.models:
+        raise ServiceError(TAKEN)
+    if is_turnless(request.initial_pose):
+        description = dataclasses.replace(description, pose=IDENTITY)
+    if request.robot_namespace:
+        description = with_namespace(description, request.robot_namespace)
+    simulation.spawn(description, pose, description.name)
+    done(response, SPAWNED)
 
-    def spawn_urdf(request, response):
-        if not URDF_ROOT.search(request.model_xml):
-            raise CallFails("SpawnModel: Failure - entity format is invalid.")
-        try:
-            spawn(request, response)
-        except FormatError as error:
-            if UNKNOWN_PACKAGE in str(error):
-                raise CallFails(str(error)) from None
-            raise
 
-    def delete(request, response):
-        model = find_model(simulation.world, request.model_name,
-                           "DeleteModel: model does not exist")
-        simulation.delete(model.name)
-        done(response, "DeleteModel: successfully deleted model")
+@service(names.SPAWN_URDF_MODEL, SpawnModel)
+def spawn_urdf(simulation: Simulation, request, response) -> None:
+    """The same for a URDF alone.
 
-    offer(simulation.mailbox, names.SPAWN_URDF_MODEL, SpawnModel, spawn_urdf)
-    offer(simulation.mailbox, names.SPAWN_SDF_MODEL, SpawnModel, spawn)
-    offer(simulation.mailbox, names.DELETE_MODEL, DeleteModel, delete)
+    CallFails if it is none, or names an unknown package; ServiceError and FormatError as above.
+    """
+    if not URDF_ROOT.search(request.model_xml):
+        raise CallFails("SpawnModel: Failure - entity format is invalid.")
+    try:
+        spawn(simulation, request, response)
+    except FormatError as error:
+        if UNKNOWN_PACKAGE in str(error):
+            raise CallFails(str(error)) from None
+        raise
+
+
+@service(names.DELETE_MODEL, DeleteModel)
+def delete(simulation: Simulation, request, response) -> None:
+    """Take a model out of the world. ServiceError if there is none of that name."""
+    model = find_model(simulation.world, request.model_name, "DeleteModel: model does not exist")
+    simulation.delete(model.name)
+    done(response, "DeleteModel: successfully deleted model")
 
 
 def with_namespace(description: ModelDescription, namespace: str) -> ModelDescription:

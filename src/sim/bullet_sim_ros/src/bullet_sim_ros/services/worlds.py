@@ -7,6 +7,7 @@ from gazebo_msgs.srv import GetModelProperties, GetWorldProperties
 from std_srvs.srv import Empty
 
 from bullet_sim_ros import names
+from bullet_sim_ros.loop import advance
 from bullet_sim_ros.services.answers import done, service
 from bullet_sim_ros.services.lookup import find_part
 from bullet_sim_ros.simulation import Simulation
@@ -21,9 +22,19 @@ def _set_paused(simulation: Simulation, paused: bool) -> None:
     simulation.world.paused = paused
 
 
+def _step(simulation: Simulation) -> None:
+    """Take one step and run the tasks due then; afterwards pause and publish /clock."""
+    simulation.world.paused = False
+    try:
+        advance(simulation)
+    finally:
+        simulation.world.paused = True
+    simulation.publish_clock()
+
+
 _register(names.PAUSE_PHYSICS, partial(_set_paused, paused=True))
 _register(names.UNPAUSE_PHYSICS, partial(_set_paused, paused=False))
-_register(names.STEP_PHYSICS, Simulation.step)
+_register(names.STEP_PHYSICS, _step)
 _register(names.RESET_WORLD, lambda simulation: simulation.world.reset_models())
 _register(names.RESET_SIMULATION, Simulation.reset)
 

@@ -11,6 +11,7 @@ from camera_models import SMALL, WALL, eye
 from dynamic_reconfigure.msg import Config, DoubleParameter, IntParameter, StrParameter
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
+from bullet_sim.rendering.renderer import NoRenderer
 from bullet_sim_ros.cameras.encodings import ENCODINGS, decode
 
 CAMERA = "libgazebo_ros_camera.so"
@@ -372,3 +373,20 @@ def test_sensors_that_nobody_reads_are_said_once(bench, caplog, kind, said):
     # conforms: sdf sensor@type
     bench.spawn(f'<model name="m"><link name="l"><sensor name="s" type="{kind}"/></link></model>')
     assert caplog.text.count("model m: sensor s: " + said) == 1
+
+
+def test_a_robot_with_a_camera_is_refused_where_no_camera_can_be_drawn(
+        make_bench, monkeypatch):
+    # conforms: /gazebo/spawn_sdf_model, libgazebo_ros_camera.so
+    def broken(profiler):
+        raise NoRenderer("cameras cannot be drawn")
+
+    monkeypatch.setattr("bullet_sim_ros.drawing.open_renderer", broken)
+    bench = make_bench()
+    before = bench.advertised()
+    drive = '<plugin name="p" filename="libgazebo_ros_p3d.so"><bodyName>l</bodyName></plugin>'
+    model = eye(CAMERA).replace("</model>", f"{drive}</model>")
+    answer = bench.call("/gazebo/spawn_sdf_model", model_name="eye",
+                        model_xml=f'<sdf version="1.6">{model}</sdf>')
+    assert (answer.success, answer.status_message) == (False, "cameras cannot be drawn")
+    assert "eye" not in bench.world.models and bench.advertised() == before

@@ -5,7 +5,7 @@ import time
 import pytest
 from camera_models import eye
 
-from bullet_sim_ros import convert
+from bullet_sim_ros import convert, loop
 
 KINECT = "libgazebo_ros_openni_kinect.so"
 LATE = 0.2  # s, wall
@@ -33,7 +33,7 @@ def slow(monkeypatch):
 def test_the_last_points_of_a_camera_come_before_it_is_gone(bench, slow):
     # conforms: libgazebo_ros_openni_kinect.so
     messages = spawn(bench, "eye")
-    bench.simulation.run(PICTURE)
+    loop.run(bench.simulation, PICTURE)
     bench.delete("eye")
     assert len(messages) == 1
 
@@ -42,7 +42,7 @@ def test_in_lockstep_points_have_come_when_their_picture_has(make_bench, slow):
     # conforms: libgazebo_ros_openni_kinect.so
     bench = make_bench(lockstep="/cmd_vel", lockstep_timeout=0.0)
     messages = spawn(bench, "eye")
-    bench.simulation.run(PICTURE)
+    loop.run(bench.simulation, PICTURE)
     assert len(messages) == 1
 
 
