@@ -3,5 +3,6 @@
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$root"
 rm -rf .venv .setup build devel install out/test .pytest_cache .ruff_cache .catkin_workspace __pycache__
+rm -rf src/sim/bullet_sim/src/bullet_sim/data/models
 [ ! -L src/CMakeLists.txt ] || rm -f src/CMakeLists.txt
 find src test scripts -name __pycache__ -type d -prune -exec rm -rf {} +

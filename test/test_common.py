@@ -72,6 +72,7 @@ def test_mending_apt_removes_no_package() -> None:
 def test_a_file_that_root_left_behind_stops_no_build(tmp_path: Path) -> None:
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/setup.bash").touch()
+    (tmp_path / "src/sim/bullet_sim/src/bullet_sim/data/models").mkdir(parents=True)
     (tmp_path / "build-inputs").write_text("inputs\n")
     (tmp_path / "build-inputs.now").symlink_to("/nowhere/x")  # cannot be written either
     done = subprocess.run(
@@ -130,7 +131,8 @@ def test_a_method_that_is_not_there_is_one_line():
     assert len(done.stderr.splitlines()) == 1
 
 
-def test_what_pip_leaves_in_a_package_needs_no_build(tmp_path: Path) -> None:
+def test_a_changed_model_needs_a_build_and_what_pip_leaves_in_a_package_none(
+        tmp_path: Path) -> None:
     def inputs():
         script = f"root={tmp_path}; . {ROOT}/scripts/setup/workspace.sh; build_inputs"
         return subprocess.run(["bash", "-c", script], text=True, capture_output=True,
@@ -144,6 +146,9 @@ def test_what_pip_leaves_in_a_package_needs_no_build(tmp_path: Path) -> None:
     for name in ("package.xml", "__init__.py"):
         (tmp_path / "src/car/build/lib/car" / name).touch()
     assert inputs() == before
+    (tmp_path / "src/bullet_sim/data/props").mkdir(parents=True)
+    (tmp_path / "src/bullet_sim/data/props/street.toml").touch()
+    assert "street.toml" in inputs()
 
 
 @pytest.mark.parametrize(("stays", "who"), [("yes", "root"), ("", "person")])

@@ -1,14 +1,20 @@
-"""Installs the core with pip; catkin reads packages and package_dir from it."""
+"""Installs the core with pip; catkin reads packages and package_dir from it.
 
+It makes data/models first, which is part of the package and not committed.
+"""
+
+import runpy
 from pathlib import Path
 
 from setuptools import find_packages, setup
 
+HERE = Path(__file__).resolve().parent
+runpy.run_path(str(HERE / "src/bullet_sim/props.py"), run_name="__main__")
 setup(
     name="bullet_sim",
     version="0.1.0",
     description="Gazebo's models, worlds, sensors and cameras on PyBullet, without ROS",
-    long_description=(Path(__file__).parent / "README.md").read_text(encoding="utf-8"),
+    long_description=(HERE / "README.md").read_text(encoding="utf-8"),
     long_description_content_type="text/markdown",
     license="BSD-3-Clause",
     package_dir={"": "src"},

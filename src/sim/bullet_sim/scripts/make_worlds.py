@@ -14,7 +14,8 @@ from xml.etree.ElementTree import Element, SubElement
 
 import cv2
 import numpy as np
-from make_props import DATA, add_model, document
+
+from bullet_sim.props import DATA, add_model, document
 
 WORLDS = DATA / "worlds"
 TERRAIN = "media/materials/textures/heightmap_bowl.png"  # Gazebo has its own image there
@@ -64,7 +65,7 @@ def stacks() -> str:
 
 
 def _body(pose: list[float], mass: float, look: str, **shape: float | list[float]) -> dict:
-    """A table as in make_props.py."""
+    """A table as in bullet_sim/props.py."""
     return {"pose": pose, "mass": mass, "parts": [{**shape, "look": f"Gazebo/{look}"}]}
 
 

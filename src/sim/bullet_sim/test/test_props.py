@@ -3,6 +3,7 @@ their data say, and standing where they are put."""
 
 import importlib
 import math
+import subprocess
 import sys
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 from prop_models import RESOURCES, bounds, load
 
+from bullet_sim import props
 from bullet_sim.description import (
     Box,
     Cylinder,
@@ -31,15 +33,38 @@ LIMIT = 0.001  # m, and rad
 
 sys.path.append(str(SCRIPTS))
 script = importlib.import_module  # a file of scripts/
-PROPS = script("make_props").read_props()
-OTHERS = {path.name for path in (DATA_FOLDER / "models").iterdir()} - set(PROPS)
+TABLES = props.read_props()
+PROPS = {name: table for name, table in TABLES.items() if "parts" in table}
 
 
-@pytest.mark.parametrize("maker", ["make_props", "make_worlds"])
-def test_files_are_what_their_script_writes(maker):
-    folder = DATA_FOLDER / ("models" if maker == "make_props" else "worlds")
-    for name, text in script(maker).files().items():
-        assert (folder / name).read_text(encoding="utf-8") == text, f"python3 {SCRIPTS}/{maker}.py"
+def test_worlds_are_what_their_script_writes():
+    for name, text in script("make_worlds").files().items():
+        assert (DATA_FOLDER / "worlds" / name).read_text(encoding="utf-8") == text, (
+            f"python3 {SCRIPTS}/make_worlds.py")
+
+
+def test_the_models_are_those_of_the_tables_after_each_change(tmp_path):
+    tables, models = tmp_path / "props", tmp_path / "models"
+    tables.mkdir()
+    (tables / "lamp.sdf").write_text("<sdf/>")
+    table = '[lamp]\nby_hand = "lamp.sdf"\n[cube]\nparts = [{box = [1, 1, 1], look = [0, 0, 1]}]\n'
+    (tables / "all.toml").write_text(table)
+    props.write_models(models, tables)
+    assert (models / "lamp/model.sdf").read_text() == "<sdf/>"
+    cube, config = models / "cube/model.sdf", models / "cube/model.config"
+    assert "<size>1 1 1</size>" in cube.read_text() and "<name>cube</name>" in config.read_text()
+    left_alone = config.stat().st_mtime_ns
+    (tables / "all.toml").write_text(table[table.index("[cube]"):].replace("1, 1, 1", "2, 2, 2"))
+    props.write_models(models, tables)
+    assert "<size>2 2 2</size>" in cube.read_text()
+    assert config.stat().st_mtime_ns == left_alone
+    assert sorted(path.name for path in models.rglob("*")) == ["cube", "model.config", "model.sdf"]
+
+
+def test_the_models_can_be_made_before_anything_is_installed():
+    done = subprocess.run([sys.executable, "-I", "-S", props.__file__], capture_output=True,
+                          text=True, check=False)
+    assert (done.returncode, done.stdout + done.stderr) == (0, "")
 
 
 def test_the_terrain_image_is_what_its_script_draws():
@@ -64,7 +89,7 @@ def stood() -> dict[str, tuple[Pose, Pose]]:
     """Poses of all that can fall, put on the ground a second ago: then and now."""
     world = World(load_world(DATA_FOLDER / "worlds/empty.world", RESOURCES))
     placed = {}
-    for number, name in enumerate(sorted({*PROPS, *OTHERS} - {"sun", "ground_plane"})):
+    for number, name in enumerate(sorted(TABLES.keys() - {"sun", "ground_plane"})):
         model = load(name)
         if not model.static:
             column, row = divmod(number, 12)

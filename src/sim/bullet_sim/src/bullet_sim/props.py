@@ -1,9 +1,9 @@
-#!/usr/bin/env python3
-"""Writes the folders of data/models described by data/props/*.toml: plain bodies of one link.
+"""Writes data/models, which is not committed, from data/props: plain bodies of one link.
 
-    python3 src/sim/bullet_sim/scripts/make_props.py
+CMakeLists.txt runs it, setup.py for pip, and conftest.py for the tests. It imports nothing but the
+standard library, since pip runs it before anything is installed.
 
-A table is a model. Its keys (SI units):
+A table of data/props/*.toml is a model. Its keys (SI units):
   name        the model's name if it is not that of the folder
   like, paint copies another model's table, except its name, and changes its first part's look
   static, mass (1), link ("link"), pose and link_pose [x, y, z(, roll, pitch, yaw)], as in SDF
@@ -15,15 +15,20 @@ A table is a model. Its keys (SI units):
               (on the four sides of a cube of 0.8 m); at = [x, y, z(, roll, pitch, yaw)] in the
               link, look = a Gazebo material or [r, g, b], solid / seen = false for no collision /
               no visual
+or
+  by_hand     the file of data/props that is the model's SDF, as it is
+  description what model.config says of it
 """
 
 import math
+import os
+import shutil
 import tomllib
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-DATA = Path(__file__).resolve().parents[1] / "src/bullet_sim/data"
-SOURCE = "make_props.py from data/props"
+DATA = Path(__file__).resolve().parent / "data"
+SOURCE = "bullet_sim/props.py from data/props"
 SHAPES = ("box", "cylinder", "sphere")
 FACES = ((0.4, 0.0, 0.0), (0.0, 0.4, 90.0), (-0.4, 0.0, 180.0), (0.0, -0.4, 270.0))
 # The seven bars of a digit: across, up (of half the digit's width and height), whether horizontal.
@@ -34,7 +39,7 @@ DIGITS = {1: "bc", 2: "abged", 3: "abgcd", 4: "fgbc", 5: "afgcd", 6: "afgecd", 7
 
 
 def read_props(folder: Path = DATA / "props") -> dict[str, dict]:
-    """All tables by model folder, with `like` replaced and each part made of plain shapes."""
+    """All tables by model, with `like` replaced and each part made of plain shapes."""
     tables = {}
     for path in sorted(folder.glob("*.toml")):
         tables |= tomllib.loads(path.read_text(encoding="utf-8"))
@@ -42,6 +47,8 @@ def read_props(folder: Path = DATA / "props") -> dict[str, dict]:
 
 
 def _complete(table: dict, tables: dict[str, dict]) -> dict:
+    if "by_hand" in table:
+        return table
     if "like" in table:
         model = {key: tables[table["like"]][key] for key in tables[table["like"]] if key != "name"}
         first = {**model["parts"][0], "look": table["paint"]}
@@ -107,6 +114,8 @@ def config_text(folder: str, table: dict) -> str:
     _text(model, "name", table.get("name", folder))
     _text(model, "version", "1.0")
     _text(model, "sdf", "model.sdf").set("version", "1.6")
+    if "description" in table:
+        _text(model, "description", table["description"])
     return document(model, SOURCE)
 
 
@@ -206,17 +215,37 @@ def _numbers(values: list[float]) -> str:
     return " ".join(f"{value:.7g}" for value in values)
 
 
-def files() -> dict[str, str]:
-    """The files that the script writes: text by path below data/models."""
+def files(props: Path = DATA / "props") -> dict[str, str]:
+    """Text by path below data/models of all files that belong there."""
     written = {}
-    for folder, table in read_props().items():
-        written[f"{folder}/model.sdf"] = model_text(folder, table)
+    for folder, table in read_props(props).items():
+        by_hand = table.get("by_hand")
+        written[f"{folder}/model.sdf"] = (
+            (props / by_hand).read_text(encoding="utf-8") if by_hand else model_text(folder, table))
         written[f"{folder}/model.config"] = config_text(folder, table)
     return written
 
 
-if __name__ == "__main__":
-    for name, text in files().items():
-        path = DATA / "models" / name
+def write_models(models: Path = DATA / "models", props: Path = DATA / "props") -> None:
+    """Make the folder `models` hold what `props` describes, and no other model.
+
+    A file that is right is left alone, and one that is not is replaced at once: simulators that
+    run may be reading it.
+    """
+    wanted = files(props)
+    for name, text in wanted.items():
+        path = models / name
+        if path.is_file() and path.read_text(encoding="utf-8") == text:
+            continue
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
+        new = path.with_name(f"{path.name}.{os.getpid()}")
+        new.write_text(text, encoding="utf-8")
+        new.replace(path)
+    folders = {name.partition("/")[0] for name in wanted}
+    for folder in models.iterdir():
+        if folder.name not in folders:
+            shutil.rmtree(folder)
+
+
+if __name__ == "__main__":
+    write_models()
