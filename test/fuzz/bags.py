@@ -13,7 +13,7 @@ import rospy
 from mutating import BINARY, spoilt
 from sensor_msgs.msg import LaserScan
 from sim_viewer.registry import Refused
-from sim_viewer.tools.bag_folder import contents
+from sim_viewer.tools.bags import contents
 from target import Target
 from tf2_msgs.msg import TFMessage
 

@@ -9,7 +9,7 @@ from gazebo_msgs.srv import SetModelState, SetPhysicsProperties, SpawnModel
 from mutating import TEXT, spoilt
 from sensor_msgs.msg import Joy, LaserScan
 from sim_viewer.registry import Refused
-from sim_viewer.tools.forms import fill, template
+from sim_viewer.tools.messages import fill, template
 from target import Target
 
 KINDS = (SpawnModel._request_class, SetModelState._request_class,

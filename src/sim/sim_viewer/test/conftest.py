@@ -10,8 +10,8 @@ from pathlib import Path
 import aiohttp
 import pytest
 from sim_viewer import registry
-from sim_viewer.context import Node
 from sim_viewer.options import Options
+from sim_viewer.registry import Node
 from sim_viewer.server import Server
 
 sys.path.insert(0, str(Path(__file__).parent))

@@ -6,8 +6,8 @@ import aiohttp
 import pytest
 from sim_viewer import options as node_options
 from sim_viewer import registry
-from sim_viewer.context import Node
 from sim_viewer.options import Options
+from sim_viewer.registry import Node
 from sim_viewer.server import Server, further_urls, page_url
 from yarl import URL
 

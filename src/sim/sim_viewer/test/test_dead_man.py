@@ -4,7 +4,7 @@ import itertools
 import random
 
 import pytest
-from sim_viewer.dead_man import HOLD, STOP, Command, DeadMan, DrivenByAnother
+from sim_viewer.drive_guard import HOLD, STOP, Command, DeadMan, DrivenByAnother
 
 AHEAD = Command(0.2, 0.0)
 LEFT = Command(0.0, 1.0)

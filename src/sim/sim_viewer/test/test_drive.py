@@ -5,11 +5,9 @@ import time
 
 import pytest
 from sim_viewer import drive, drive_guard, registry
-from sim_viewer.context import Context, Node
-from sim_viewer.dead_man import HOLD, STOP, Command
-from sim_viewer.handles import Handles
+from sim_viewer.drive_guard import HOLD, STOP, Command, Handles
 from sim_viewer.options import Options
-from sim_viewer.registry import Refused
+from sim_viewer.registry import Context, Node, Refused
 
 AHEAD = Command(0.2, 0.0)
 

@@ -7,8 +7,8 @@ import random
 import subprocess
 
 import pytest
-from sim_viewer.tools import graph_layout
-from sim_viewer.tools.graph_layout import LayoutError, layout
+from sim_viewer.tools import graph
+from sim_viewer.tools.graph import LayoutError, layout
 
 
 def named(nodes) -> dict[str, str]:
@@ -56,7 +56,7 @@ def test_a_large_graph_has_straight_edges_in_time():
     edges = {(pick.choice(nodes), topic) for topic in topics}
     edges |= {(topic, pick.choice(nodes)) for topic in topics}
     plan = layout(named(nodes + topics), edges)
-    assert set(plan.curves) == edges and len(edges) > graph_layout.MOST_CURVED
+    assert set(plan.curves) == edges and len(edges) > graph.MOST_CURVED
     for (x, y), *between, (u, v) in plan.curves.values():
         for s, t in between:
             assert abs((s - x) * (v - y) - (t - y) * (u - x)) / math.dist((x, y), (u, v)) < 1.0
@@ -76,7 +76,7 @@ def test_a_graph_that_takes_too_long_to_layer_is_laid_out_by_springs(monkeypatch
             raise subprocess.TimeoutExpired("dot", 5.0)
         return run(*arguments, **options)
 
-    monkeypatch.setattr(graph_layout.subprocess, "run", layers_take_long)
+    monkeypatch.setattr(graph.subprocess, "run", layers_take_long)
     names = {str(i): f"/node/{i}" for i in range(40)}
     plan = layout(names, [(str(i), str(i * 7 % 40)) for i in range(40)])
     assert set(plan.boxes) == set(names)
@@ -86,7 +86,7 @@ def test_a_graph_that_takes_too_long_to_layer_is_laid_out_by_springs(monkeypatch
 
 
 def test_a_graph_that_takes_too_long_is_refused(monkeypatch):
-    monkeypatch.setattr(graph_layout, "LONGEST", 0.05)
+    monkeypatch.setattr(graph, "LONGEST", 0.05)
     pick = random.Random(1)
     nodes = [str(i) for i in range(300)]
     edges = [(pick.choice(nodes), pick.choice(nodes)) for _ in range(3000)]
@@ -100,6 +100,6 @@ def test_what_dot_says_when_it_fails_is_passed_on(monkeypatch):
     def fail(*_args, **_options):
         raise subprocess.CalledProcessError(1, "dot", stderr="Error: out of ink\n")
 
-    monkeypatch.setattr(graph_layout.subprocess, "run", fail)
+    monkeypatch.setattr(graph.subprocess, "run", fail)
     with pytest.raises(LayoutError, match="dot failed: Error: out of ink"):
         layout(named("a"), [])

@@ -4,7 +4,7 @@ import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 
-from sim_viewer.context import WORKERS
+from sim_viewer.registry import WORKERS
 from sim_viewer.tools import sim
 
 ANSWER_TIME, DEADLINE = 2.0, 15.0  # s; between them is what a busy machine may take

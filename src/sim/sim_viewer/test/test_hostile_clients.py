@@ -11,8 +11,8 @@ from pathlib import Path
 import aiohttp
 import pytest
 from sim_viewer import hub, registry
-from sim_viewer.context import Context, Node
 from sim_viewer.options import Options
+from sim_viewer.registry import Context, Node
 from sim_viewer.tools.paced import Paced
 
 MESSAGES = 1000

@@ -5,7 +5,7 @@ import sys
 
 STORY = """
 import pathlib, threading
-from sim_viewer.memory import give_back_large_blocks
+from sim_viewer.node import give_back_large_blocks
 
 def used():
     return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * 4096 >> 20

@@ -4,7 +4,7 @@ import asyncio
 import json
 import struct
 
-from sim_viewer.outbox import MOST_BYTES, MOST_KEPT, Outbox, encode
+from sim_viewer.hub import MOST_BYTES, MOST_KEPT, Outbox, encode
 
 
 def drained(fill, watches=(1, 2)):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from cv_bridge import CvBridge
 from sensor_msgs.msg import CompressedImage, Image
-from sim_viewer.pictures import to_jpeg
+from sim_viewer.images import to_jpeg
 from sim_viewer.registry import Refused
 
 ORANGE = (0, 128, 255)  # BGR

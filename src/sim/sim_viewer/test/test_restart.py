@@ -4,10 +4,10 @@ import asyncio
 import os
 
 import yaml
+from sim_viewer import node
 from sim_viewer import node as viewer_node
-from sim_viewer import restart
-from sim_viewer.context import Node
 from sim_viewer.options import TOKEN, Options, read_options
+from sim_viewer.registry import Node
 
 OPTIONS = Options(port=8081, control=True, token="0123", hosts=("a", "b"), bags="/data/run 1",
                   rviz="/a b.rviz")
@@ -15,8 +15,8 @@ OPTIONS = Options(port=8081, control=True, token="0123", hosts=("a", "b"), bags=
 
 def test_parameters_come_back_as_they_were(monkeypatch):
     started = []
-    monkeypatch.setattr(restart.os, "execve", lambda *given: started.append(given))
-    restart.restart(OPTIONS, 8082)
+    monkeypatch.setattr(node.os, "execve", lambda *given: started.append(given))
+    node.restart(OPTIONS, 8082)
     (_, words, environment), = started
     assert "0123" not in " ".join(words)  # `ps` shows them to all
     given = dict(word.split(":=", 1) for word in words if word.startswith("_") and ":=" in word)

@@ -8,12 +8,10 @@ import pytest
 from interactive_messages import EVENTS, control, handle, init
 from rviz_messages import at
 from rviz_view import MadeUpView, drawer
-from sim_viewer.context import Context, Node
 from sim_viewer.options import Options
-from sim_viewer.registry import Refused, find_operation
+from sim_viewer.registry import Context, Node, Refused, find_operation
 from sim_viewer.rviz.display import Displays
-from sim_viewer.rviz.feedback import rviz_feedback, rviz_menu
-from sim_viewer.rviz.tools import Publishers
+from sim_viewer.rviz.tools import Publishers, rviz_feedback, rviz_menu
 from visualization_msgs.msg import InteractiveMarkerControl as Mode
 from visualization_msgs.msg import MenuEntry
 

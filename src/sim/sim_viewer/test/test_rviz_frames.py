@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from sim_viewer.rviz.display_type import Problem
 from sim_viewer.rviz.drawing import Part, encode, frame, points_of
-from sim_viewer.rviz.pace import FEWEST, MOST, Pace
-from sim_viewer.rviz.waiting import QUEUE, Waiting
+from sim_viewer.rviz.showing import FEWEST, MOST, QUEUE, Pace, Waiting
 
 from bullet_sim.pose import Pose
 

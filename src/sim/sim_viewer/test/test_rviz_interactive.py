@@ -10,9 +10,9 @@ from interactive_messages import TO_Z, control, cube, handle, init, moved, scene
 from rviz_messages import at, turned
 from rviz_view import MadeUpView, drawer
 from sim_viewer.rviz.display_type import Problem
-from sim_viewer.rviz.displays import interactive, interactive_marker, interactive_server
+from sim_viewer.rviz.displays import interactive, interactive_marker
 from sim_viewer.rviz.displays.interactive import TYPE, namespace
-from sim_viewer.rviz.displays.interactive_handles import unique
+from sim_viewer.rviz.displays.interactive_marker import unique
 from visualization_msgs.msg import InteractiveMarkerControl as Mode
 from visualization_msgs.msg import InteractiveMarkerUpdate, Marker
 
@@ -263,7 +263,7 @@ def test_more_than_a_page_can_draw_is_left_out_and_told_of(monkeypatch):
 
 
 def test_more_than_there_is_room_for_is_refused(monkeypatch):
-    monkeypatch.setattr(interactive_server, "MOST_MARKERS", 2)
+    monkeypatch.setattr(interactive, "MOST_MARKERS", 2)
     made = drawer("InteractiveMarkers")
     with pytest.raises(Problem, match="showing 2 markers"):
         made.take(init(0, *map(handle, "abc")), None, 0.0)

@@ -13,9 +13,9 @@ from rviz_messages import (
 )
 from rviz_view import MadeUpView, draw, drawer, only
 from sensor_msgs.msg import PointField
-from sim_viewer.rviz.colours import rainbow
 from sim_viewer.rviz.display_type import Problem
-from sim_viewer.rviz.displays.cloud import records
+from sim_viewer.rviz.displays.points import records
+from sim_viewer.rviz.options import rainbow
 
 from bullet_sim.pose import Pose
 

@@ -9,9 +9,8 @@ import pytest
 import rospy
 from geometry_msgs.msg import TransformStamped, Vector3
 from rviz_messages import turned
-from sim_viewer.context import Context, Node
 from sim_viewer.options import Options
-from sim_viewer.registry import Refused
+from sim_viewer.registry import Context, Node, Refused
 from sim_viewer.rviz.display import Display, Displays
 from sim_viewer.rviz.display_type import Problem
 from sim_viewer.rviz.page import rviz_config, rviz_types

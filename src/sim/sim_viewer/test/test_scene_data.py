@@ -11,12 +11,11 @@ import pytest
 from aiohttp import web
 from gazebo_msgs.msg import LinkStates
 from geometry_msgs.msg import Point, Pose, Quaternion, Twist
-from sim_viewer.context import Node
-from sim_viewer.meshes import Meshes, mesh_bytes
 from sim_viewer.options import Options
-from sim_viewer.page_scene import page_scene
+from sim_viewer.page_scene import Meshes, mesh_bytes, page_scene
+from sim_viewer.registry import Node
 from sim_viewer.scene import SceneBroadcast
-from sim_viewer.simulator_source import SimulatorSource
+from sim_viewer.scene_sources import SimulatorSource
 
 from bullet_sim import pose as poses
 from bullet_sim.description import Box, LightDescription, Material, Plane, SceneDescription, Visual

@@ -1,8 +1,7 @@
 """The simulator is found in whatever namespace it runs."""
 
 import pytest
-from sim_viewer.tools.master import SystemState
-from sim_viewer.tools.simulator_name import simulator_name
+from sim_viewer.tools.master import SystemState, simulator_name
 
 
 @pytest.mark.parametrize(("services", "name"), [

@@ -5,7 +5,7 @@ from nav_msgs.msg import Odometry
 from rospy import Time
 from sensor_msgs.msg import JointState, LaserScan
 from sim_viewer.registry import Refused
-from sim_viewer.tools.fields import expand, numeric_paths, parse_steps, split_topic, value
+from sim_viewer.tools.messages import expand, numeric_paths, parse_steps, split_topic, value
 from std_msgs.msg import String, UInt8MultiArray
 
 

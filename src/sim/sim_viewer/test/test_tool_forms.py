@@ -7,8 +7,7 @@ from geometry_msgs.msg import Pose, PoseArray
 from rospy import Time
 from sensor_msgs.msg import LaserScan
 from sim_viewer.registry import Refused
-from sim_viewer.tools.forms import fill, load_yaml, template
-from sim_viewer.tools.message_text import to_text
+from sim_viewer.tools.messages import fill, load_yaml, template, to_text
 from std_msgs.msg import Header, String
 from std_srvs.srv import EmptyRequest, SetBoolRequest
 from turtlesim.srv import SetPenRequest, SpawnRequest

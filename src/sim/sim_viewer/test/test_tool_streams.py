@@ -11,8 +11,7 @@ from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 from rospy import Time
 from sim_viewer.registry import Refused
-from sim_viewer.tools.bag_folder import bag_path, contents, existing_bag, listing, new_bag
-from sim_viewer.tools.bags import check_topic
+from sim_viewer.tools.bags import bag_path, check_topic, contents, existing_bag, listing, new_bag
 from sim_viewer.tools.clock import FactorMeter
 from sim_viewer.tools.console import line_of, pick
 from sim_viewer.tools.parameters import check_name, read_value, rows, to_yaml

@@ -11,9 +11,8 @@ from typing import Any
 import rosgraph
 import rospy
 
-from sim_viewer.context import Context, Node
 from sim_viewer.drive_guard import MESSAGES
-from sim_viewer.registry import Refused, operation
+from sim_viewer.registry import Context, Node, Refused, operation
 from sim_viewer.tools.master import asked, connect
 
 FASTEST = 20.0  # m/s and rad/s; more is a mistake, whatever the robot

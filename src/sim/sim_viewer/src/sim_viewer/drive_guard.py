@@ -10,27 +10,153 @@ input, and when that ends, it stops everything and ends as well:
     {"do": "stop", "topic": "/cmd_vel"}
 
 A line with a number is answered on its standard output by {"number": 2, "taken": false}; `taken`:
-another client drives now (see dead_man.py).
+another client drives now (see DeadMan, which has no ROS, no thread and no clock: `now` is passed
+in, in seconds of a monotonic clock).
 """
 
 import json
+import math
 import os
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
 from typing import Any
 
 import rospy
 from ackermann_msgs.msg import AckermannDriveStamped
 from geometry_msgs.msg import Twist
 
-from sim_viewer.dead_man import STOP, Command, DrivenByAnother
-from sim_viewer.handles import Handles
-
+HOLD = 0.25  # s that a command lasts; the page repeats a held key at 10 Hz
 FLUSH = 0.1  # s in which rospy's threads send what was published last
 CONNECTING = 1.0  # s to wait for the robot to connect, so that the first key is not lost
 URGENT = -10  # niceness: it does little, but must be in time; only root may set it
+
+
+@dataclass(frozen=True)
+class Command:
+    """The command of a held key. Positive: forwards, and to the left."""
+
+    linear: float  # m/s
+    angular: float  # rad/s; for a car the steering angle in rad
+
+
+STOP = Command(0.0, 0.0)
+
+
+class DrivenByAnother(Exception):
+    """Another client drives now; this one must release its keys before it may drive again."""
+
+
+class DeadMan:
+    """One topic with one driver. Each method returns the commands to publish now, oldest first."""
+
+    def __init__(self, hold: float = HOLD) -> None:
+        self._hold = hold
+        self.driver: Hashable | None = None
+        # When `expire` has a command to publish, s; infinite while nobody drives.
+        self.until = math.inf
+        self._moving = False  # whether the last published command was not a stop
+        self._last: Hashable | None = None  # who drove last, until it releases
+        self._ousted: set[Hashable] = set()  # earlier drivers that have not released
+
+    def press(self, client: Hashable, command: Command, now: float) -> list[Command]:
+        """A command of a client. The latest client becomes the driver, beginning with a stop.
+
+        So two people never drive one robot in turn: the earlier driver, also one whose command
+        expired, gets DrivenByAnother until it releases its keys.
+        """
+        if client in self._ousted:
+            raise DrivenByAnother
+        if self._last not in (None, client):
+            self._ousted.add(self._last)
+        self._last = client
+        due = self.expire(now)
+        taken = self.driver not in (None, client)
+        self.driver, self.until = client, now + self._hold
+        return self._stop() if taken else [*due, *self._go(command)]
+
+    def release(self, client: Hashable) -> list[Command]:
+        """The client released its keys, or disconnected."""
+        self._ousted.discard(client)
+        if client == self._last:
+            self._last = None
+        return self._let_go() if client == self.driver else []
+
+    def expire(self, now: float) -> list[Command]:
+        """Stop if the driver has sent nothing for the length of a command."""
+        return self._let_go() if now >= self.until else []
+
+    def _let_go(self) -> list[Command]:
+        self.driver, self.until = None, math.inf
+        return self._stop()
+
+    def _stop(self) -> list[Command]:
+        stops = [STOP] if self._moving else []
+        self._moving = False
+        return stops
+
+    def _go(self, command: Command) -> list[Command]:
+        self._moving = command != STOP
+        return [command]
+
+
+class Handles:
+    """A DeadMan for each topic. All methods may be called from any thread."""
+
+    def __init__(self, publish: Callable[[str, Command], None],
+                 clock: Callable[[], float] = time.monotonic) -> None:
+        self._publish = publish
+        self._clock = clock
+        self._handles: dict[str, DeadMan] = {}
+        self._changed = threading.Condition()
+        self._closed = False
+        self._timer = threading.Thread(target=self._stop_in_time, name="dead man", daemon=True)
+        self._timer.start()
+
+    def press(self, client: Hashable, topic: str, command: Command) -> None:
+        """Pass a command on; DrivenByAnother if another client drives this topic.
+
+        A client drives one topic: what it drove before is stopped.
+        """
+        with self._changed:
+            self._release(client, besides=topic)
+            handle = self._handles.setdefault(topic, DeadMan())
+            self._send(topic, handle.press(client, command, self._clock()))
+            self._changed.notify()
+
+    def release(self, client: Hashable) -> None:
+        """The client released the controls, or disconnected."""
+        with self._changed:
+            self._release(client)
+
+    def close(self) -> None:
+        """Stop everything that is driven, and the thread."""
+        with self._changed:
+            self._closed = True
+            for topic, handle in self._handles.items():
+                self._send(topic, handle.release(handle.driver))
+            self._changed.notify()
+        self._timer.join()
+
+    def _release(self, client: Hashable, besides: str = "") -> None:
+        for topic, handle in self._handles.items():
+            if topic != besides:
+                self._send(topic, handle.release(client))
+
+    def _send(self, topic: str, commands: list[Command]) -> None:
+        for command in commands:
+            self._publish(topic, command)
+
+    def _stop_in_time(self) -> None:
+        with self._changed:
+            while not self._closed:
+                now = self._clock()
+                for topic, handle in self._handles.items():
+                    self._send(topic, handle.expire(now))
+                due = min((handle.until for handle in self._handles.values()), default=float("inf"))
+                self._changed.wait(None if due == float("inf") else max(due - now, 0.0))
 
 
 def twist(command: Command) -> Twist:

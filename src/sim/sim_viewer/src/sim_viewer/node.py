@@ -1,10 +1,18 @@
-"""The node /sim_viewer: asyncio and the server in the main thread, rospy's threads beside it."""
+"""The node /sim_viewer: asyncio and the server in the main thread, rospy's threads beside it.
+
+A learner leaves the page open and starts the course again: that is a new master, which does not
+know this node. rospy cannot change masters, so the process restarts, with the parameters that the
+old master had; browsers reconnect by themselves.
+"""
 
 import asyncio
+import ctypes
+import json
+import os
 import signal
 import sys
 import webbrowser
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import rosgraph
 import rospy
@@ -12,14 +20,59 @@ from rosgraph.network import get_local_addresses
 
 from bullet_sim_ros.already_running import full_name, registering
 from sim_viewer import registry
-from sim_viewer.context import Node
-from sim_viewer.memory import give_back_large_blocks
-from sim_viewer.meshes import Meshes
-from sim_viewer.options import OptionError, read_options
-from sim_viewer.restart import restart, wait_for_other_master
+from sim_viewer.options import TOKEN, OptionError, Options, read_options
+from sim_viewer.page_scene import Meshes
+from sim_viewer.registry import Node
 from sim_viewer.running_page import RUNS_ALREADY, running_page, why_another_port
 from sim_viewer.rviz.config import ConfigError, read_config
 from sim_viewer.server import NoPort, Server, further_urls, page_url
+
+M_MMAP_THRESHOLD = -3  # of glibc's malloc.h
+LARGE = 1 << 20  # bytes
+PERIOD = 2.0  # s between checks
+RUN_ID = "/run_id"  # roslaunch gives each master a new one
+
+
+def give_back_large_blocks() -> None:
+    """From now on, return large blocks to the system as soon as they are freed.
+
+    By default glibc raises this threshold to 32 MB when such a block is freed. Then each worker
+    thread keeps the memory of its clouds and maps: 0.8 GB after some minutes.
+    """
+    ctypes.CDLL(None).mallopt(M_MMAP_THRESHOLD, LARGE)
+
+
+async def wait_for_other_master(node: Node) -> None:
+    """Return when there is another master than at first; waits while there is none at all."""
+    first = await node.run_in_thread(_run_id)
+    while True:
+        await asyncio.sleep(PERIOD)
+        now = await node.run_in_thread(_run_id)
+        if first is None:
+            first = now
+        if now not in (None, first):
+            return
+
+
+def restart(options: Options, port: int) -> None:
+    """Replace this process; does not return. The page's address and token stay the same."""
+    words = parameter_words(replace(options, port=port, open=False))
+    kept = [word for word in sys.argv if not word.startswith("_") or word.startswith("__")]
+    os.execve(sys.executable, [sys.executable, *kept, *words],
+              {**os.environ, TOKEN: options.token})
+
+
+def parameter_words(options: Options) -> list[str]:
+    """The options as words of a command line, `_port:=8080`; all but the token."""
+    values = {**asdict(options), "hosts": ",".join(options.hosts)}
+    return [f"_{name}:={json.dumps(value)}" for name, value in values.items() if name != "token"]
+
+
+def _run_id() -> str | None:
+    try:
+        return rosgraph.Master("/sim_viewer").getParam(RUN_ID)
+    except (OSError, rosgraph.MasterException):
+        return None
 
 
 def main(name: str = "sim_viewer", rviz: str = "") -> None:

@@ -1,15 +1,116 @@
-"""A scene in the form that the page's 3D view needs: links with numbered meshes and poses."""
+"""A scene in the form that the page's 3D view needs: links with poses and numbered meshes.
 
+Meshes and textures are numbered, so that the page can load nothing else. GET /mesh/N is one binary,
+little-endian: four uint32 (corners n, triangles m, 1 if there is uv, 0), then float32 positions
+(n, 3) in m, normals (n, 3), uv (n, 2) with (0, 0) at the lower left, then uint32 corners of
+triangles (m, 3). GET /texture/N is an image that browsers can show.
+"""
+
+import itertools
+import threading
 from collections.abc import Hashable
+from pathlib import Path
 from typing import Any
 
-from bullet_sim.description import LightDescription, Material
-from bullet_sim.pose import Pose, rotate
-from bullet_sim.rendering.scene import LinkShape
-from bullet_sim.rendering.scene_text import SceneContent
-from sim_viewer.meshes import Meshes
+import cv2
+import numpy as np
+from aiohttp import web
 
+from bullet_sim.description import LightDescription, Material, Visual
+from bullet_sim.errors import FormatError
+from bullet_sim.meshes.images import read_image
+from bullet_sim.meshes.part import MeshPart
+from bullet_sim.pose import Pose, rotate
+from bullet_sim.rendering.scene import LinkShape, link_shape
+from bullet_sim.rendering.scene_text import SceneContent
+from sim_viewer.registry import Node
+
+SHOWN_AS_IS = (".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp")  # files that browsers can read
 NOTHING = {"background": None, "ambient": [1, 1, 1, 1], "sky": False, "lights": [], "links": []}
+
+
+class Meshes:
+    """The shapes of the present scenes, kept as long as one of them uses them. Thread safe."""
+
+    def __init__(self, node: Node):
+        self._node = node
+        self._lock = threading.Lock()
+        self._wanted: dict[Hashable, set[tuple[Visual, ...]]] = {}  # by owner
+        self._shapes: dict[tuple[Visual, ...], LinkShape] = {}
+        self._numbers: dict[MeshPart, int] = {}
+        self._parts: dict[int, MeshPart] = {}
+        self._textures: dict[int, str] = {}
+        self._next = itertools.count(1)
+
+    def shapes(self, links: list[tuple[Visual, ...]], owner: Hashable = None) -> list[LinkShape]:
+        """The shapes of links with these visuals; shapes that this owner had before and that no
+        owner has now are forgotten.
+
+        Reads files, so it may take a while.
+        """
+        with self._lock:
+            self._wanted[owner] = set(links)
+            wanted = dict.fromkeys(itertools.chain(links, *self._wanted.values()))
+            self._shapes = {visuals: self._shapes.get(visuals) or link_shape(visuals)
+                            for visuals in wanted}
+            self._count()
+            return [self._shapes[visuals] for visuals in links]
+
+    def forget(self, owner: Hashable) -> None:
+        """This owner shows nothing any more."""
+        self.shapes([], owner)
+        del self._wanted[owner]
+
+    def _count(self) -> None:
+        parts = [part for shape in self._shapes.values() for part in shape.parts]
+        self._numbers = {part: self._numbers.get(part) or next(self._next) for part in parts}
+        self._parts = {number: part for part, number in self._numbers.items()}
+        known = {path: number for number, path in self._textures.items()}
+        paths = {part.material.texture for part in parts if part.uv is not None} - {None}
+        self._textures = {known.get(path) or next(self._next): path for path in sorted(paths)}
+
+    def mesh_number(self, part: MeshPart) -> int:
+        """The number by which the page asks for a part of a present shape."""
+        return self._numbers[part]
+
+    def texture_numbers(self) -> dict[str, int]:
+        """The numbers by which the page asks for image files, by path."""
+        return {path: number for number, path in self._textures.items() if Path(path).is_file()}
+
+    async def serve_mesh(self, request: web.Request) -> web.Response:
+        """The handler of /mesh/N; HTTPNotFound if the scene does not have that part any more."""
+        part = self._parts.get(int(request.match_info["number"]))
+        if part is None:
+            raise web.HTTPNotFound(text="no such mesh in the present scene\n")
+        return web.Response(body=await self._node.run_in_thread(mesh_bytes, part),
+                            content_type="application/octet-stream")
+
+    async def serve_texture(self, request: web.Request) -> web.StreamResponse:
+        """The handler of /texture/N; HTTPNotFound likewise."""
+        path = self._textures.get(int(request.match_info["number"]))
+        if path is None:
+            raise web.HTTPNotFound(text="no such texture in the present scene\n")
+        if path.lower().endswith(SHOWN_AS_IS):
+            return web.FileResponse(path)
+        return web.Response(body=await self._node.run_in_thread(_as_png, path),
+                            content_type="image/png")
+
+
+def mesh_bytes(part: MeshPart) -> bytes:
+    """The binary that /mesh/N returns."""
+    uv = part.uv if part.uv is not None else np.empty((0, 2))
+    head = np.array([len(part.vertices), len(part.faces), part.uv is not None, 0], "<u4")
+    arrays = [(part.vertices, "<f4"), (part.normals, "<f4"), (uv, "<f4"), (part.faces, "<u4")]
+    return head.tobytes() + b"".join(np.ascontiguousarray(array, kind).tobytes()
+                                     for array, kind in arrays)
+
+
+def _as_png(path: str) -> bytes:
+    try:
+        image = read_image(path, cv2.IMREAD_COLOR)
+    except FormatError:
+        raise web.HTTPNotFound(text="no image that can be read\n") from None
+    return cv2.imencode(".png", image)[1].tobytes()
 
 
 def page_scene(content: SceneContent, meshes: Meshes, owner: Hashable = None) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from bullet_sim_ros.already_running import (
     full_name,
     sign_of_life,
 )
-from sim_viewer import about
+from sim_viewer import server
 from sim_viewer.options import Options
 from sim_viewer.server import local_url
 
@@ -100,7 +100,7 @@ def ask(address: str) -> dict[str, Any]:
     except (ValueError, http.client.HTTPException):  # no port, which read_options will say
         return {}
     try:
-        connection.request("GET", about.PATH)
+        connection.request("GET", server.PATH)
         told = json.loads(connection.getresponse().read())
     except (OSError, http.client.HTTPException, ValueError):
         return {}

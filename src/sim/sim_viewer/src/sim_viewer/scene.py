@@ -11,12 +11,9 @@ from typing import Any
 import numpy as np
 import rospy
 
-from sim_viewer.context import Context, Node
-from sim_viewer.meshes import Meshes
-from sim_viewer.page_scene import NOTHING, page_scene
-from sim_viewer.registry import Refused, watchable
-from sim_viewer.robot_source import RobotSource
-from sim_viewer.simulator_source import SimulatorSource
+from sim_viewer.page_scene import NOTHING, Meshes, page_scene
+from sim_viewer.registry import Context, Node, Refused, watchable
+from sim_viewer.scene_sources import RobotSource, SimulatorSource
 from sim_viewer.tools.master import MasterView
 from sim_viewer.transforms import Transforms
 

@@ -5,21 +5,36 @@ import logging
 from collections.abc import Awaitable, Callable
 from ipaddress import ip_address
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
+import rosgraph
 import rospkg
+import rospy
 from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
-from sim_viewer import about
 from sim_viewer.access import Access
-from sim_viewer.context import Node
 from sim_viewer.hub import Hub
 from sim_viewer.options import Options
+from sim_viewer.registry import Context, Node, operation
 
+PATH = "/about"  # the same over HTTP
 PORTS_TRIED = 100
 EVERYWHERE = ("0.0.0.0", "::", "")  # all addresses of the machine
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+
+def facts(options: Options) -> dict[str, Any]:
+    """Which node serves the page for which master, and options that a person may miss."""
+    return {"node": rospy.get_name(), "master": rosgraph.get_master_uri(),
+            "control": options.control, "rviz": options.rviz, "address": options.address}
+
+
+@operation("about")
+async def about(context: Context) -> dict[str, Any]:
+    """Whether this page may change anything, and the name of the node that serves it."""
+    return facts(context.node.options)
 
 
 class NoPort(OSError):
@@ -38,7 +53,7 @@ class Server:
         for path, handler in routes.items():
             app.router.add_get(path, handler)
         app.router.add_get("/", self._index)
-        app.router.add_get(about.PATH, self._about)
+        app.router.add_get(PATH, self._about)
         app.router.add_static("/", self._folder)
         self._runner = web.AppRunner(app, access_log=None, logger=_logger(), shutdown_timeout=1.0)
 
@@ -63,7 +78,7 @@ class Server:
         await self._runner.cleanup()
 
     async def _about(self, request: web.Request) -> web.Response:
-        return web.json_response(about.facts(self._options))
+        return web.json_response(facts(self._options))
 
     async def _index(self, request: web.Request) -> web.FileResponse:
         return web.FileResponse(self._folder / "index.html")

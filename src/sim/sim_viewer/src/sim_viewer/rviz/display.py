@@ -1,8 +1,8 @@
 """`rviz_display`: one display of one page, from its topic to frames of drawing.py.
 
 Events are bytes, a frame, or {"status": [[name, level, text]], "namespaces": of markers}. The page
-confirms each frame by `rviz_drawn` (answers.py) once it is drawn, and only then the next one, the
-newest by then, is sent.
+confirms each frame by `rviz_drawn` once it is drawn, and only then the next one, the newest by
+then, is sent. It changes options by `rviz_change`.
 """
 
 import asyncio
@@ -15,14 +15,12 @@ import numpy as np
 import rospy
 from roslib.message import get_message_class
 
-from sim_viewer.context import Context, Node
 from sim_viewer.images import sources as image_sources
-from sim_viewer.registry import Refused, argument, watchable
+from sim_viewer.registry import Context, Node, Refused, argument, operation, watchable
 from sim_viewer.rviz.display_type import DisplayType, Drawer, Problem
 from sim_viewer.rviz.drawing import Part, encode, frame, points_of
 from sim_viewer.rviz.options import check_all
-from sim_viewer.rviz.pace import Pace
-from sim_viewer.rviz.showing import Showing
+from sim_viewer.rviz.showing import Pace, Showing
 from sim_viewer.rviz.types import TYPES
 from sim_viewer.rviz.view import RosView
 from sim_viewer.subscription import decode
@@ -213,3 +211,23 @@ def _checked(kind: DisplayType, options: dict[str, Any]) -> dict[str, Any]:
         return check_all(kind.options, options)
     except ValueError as error:
         raise Refused(str(error)) from None
+
+
+def find_display(context: Context, number: int) -> Display:
+    """The page's display of this number; Refused if there is none."""
+    found = context.node.shared(Displays).get((context.client, number))
+    if found is None:
+        raise Refused(f"display is {number}, and this page shows no such one")
+    return found
+
+
+@operation("rviz_drawn")
+async def rviz_drawn(context: Context, display: int, frame: int) -> None:
+    """The page has drawn this frame of a display; Refused if there is no such display."""
+    find_display(context, display).drawn(frame)
+
+
+@operation("rviz_change")
+async def rviz_change(context: Context, display: int, options: dict, frame: str) -> None:
+    """Set other options or another fixed frame; Refused if they are invalid."""
+    find_display(context, display).change(options, frame)

@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from sim_viewer.context import Context
-from sim_viewer.registry import Refused, argument, operation, watchable
+from sim_viewer.registry import Context, Refused, argument, operation, watchable
 from sim_viewer.rviz.config import ConfigError, beginning, read_config
 from sim_viewer.rviz.display_type import ERROR, OK, WARNING
 from sim_viewer.rviz.types import TYPES

@@ -1,6 +1,10 @@
-"""One display at work: messages in, parts and statuses out. Without ROS and threads of its own."""
+"""One display at work: messages in, parts and statuses out. Without ROS and threads of its own.
+
+A page is sent one frame at a time, and no more points than it draws in time.
+"""
 
 import math
+import threading
 import time
 from collections import deque
 from collections.abc import Callable
@@ -20,13 +24,120 @@ from sim_viewer.rviz.display_type import (
     View,
 )
 from sim_viewer.rviz.drawing import Part
-from sim_viewer.rviz.waiting import Waiting
 
+FEWEST, MOST = 10_000, 200_000  # points
+SLOW, QUICK = 0.5, 0.2  # s from sending a frame until it is drawn
+LESS, MORE = 0.5, 1.25  # by how much the number of points changes then
+QUEUE = 10  # messages, as in rviz's message filter; older ones are dropped
+QUEUE_OF_ALL = 2000  # for displays to which each message counts
+MOST_WAITING_BYTES = 32 << 20  # of raw messages, but the newest two stay
 MOST_KEPT = 500  # messages that a display shows at once, and
 MOST_BYTES = 64 << 20  # how large they may be together
 JUMP = 2.0  # s; time that goes back by so much was reset
 PATIENCE = 0.5  # s that a message's transform may be late before that is an error
 Received = tuple[Any, str]  # a message, and its publisher
+
+
+class Pace:
+    """The pace of one display; times are in s of a monotonic clock."""
+
+    def __init__(self) -> None:
+        self.most_points = MOST
+        self._number = 0
+        self._sent: float | None = None  # when the frame being drawn was sent
+        self._large = False
+
+    @property
+    def free(self) -> bool:
+        """Whether the page has drawn the last frame."""
+        return self._sent is None
+
+    def sent(self, points: int, now: float) -> int:
+        """A frame with so many points is sent; returns its number."""
+        self._number += 1
+        self._sent, self._large = now, points >= self.most_points / 2
+        return self._number
+
+    def drawn(self, number: int, now: float) -> bool:
+        """The page has drawn a frame; returns whether it is the one that was sent last."""
+        if self._sent is None or number != self._number:
+            return False
+        took, self._sent = now - self._sent, None
+        if self._large and took > SLOW:
+            self.most_points = max(FEWEST, round(self.most_points * LESS))
+        elif self._large and took < QUICK:
+            self.most_points = min(MOST, round(self.most_points * MORE))
+        return True
+
+
+class Waiting:
+    """A queue of raw messages, which are decoded when they are needed. Thread safe."""
+
+    def __init__(self, every: bool, read: Callable[[Any], tuple[Any, str]]):
+        self._queue: deque[list[Any]] = deque(maxlen=QUEUE_OF_ALL if every else QUEUE)
+        self._lock = threading.Lock()
+        self._read = read
+        self.received = 0
+        self.publisher = ""  # of the message that was read last
+
+    def put(self, raw: Any) -> None:
+        """Add a message."""
+        with self._lock:
+            self.received += 1
+            self._queue.append([raw, None])
+            size = sum(len(one._buff) for one, _ in self._queue)
+            while size > MOST_WAITING_BYTES and len(self._queue) > 2:
+                size -= len(self._queue.popleft()[0]._buff)
+
+    def put_back(self, raws: list[Any]) -> None:
+        """Put messages that were shown already before those that wait."""
+        with self._lock:
+            self._queue.extendleft([raw, None] for raw in reversed(raws))
+
+    def in_order(self) -> list[Any]:
+        """Remove and return all raw messages, oldest first."""
+        with self._lock:
+            found = [raw for raw, _ in self._queue]
+            self._queue.clear()
+        return found
+
+    def newest(self, ready: Callable[[Any], Any]) -> tuple[Any, tuple[Any, str], Any] | None:
+        """The newest message for which `ready` raises no ValueError: raw, as read, and the result
+        of `ready`; older ones are dropped. One that cannot be read is, too, and its error raised.
+
+        If none is ready, the newest one's ValueError is raised.
+        """
+        with self._lock:
+            entries = list(self._queue)
+        problem = None
+        for entry in reversed(entries):
+            if entry[1] is None:
+                self._read_entry(entry)
+            try:
+                found = ready(entry[1])
+            except ValueError as error:
+                problem = problem or error
+                continue
+            self._drop(entry)
+            return entry[0], entry[1], found
+        if problem is not None:
+            raise problem
+        return None
+
+    def _read_entry(self, entry: list[Any]) -> None:
+        try:
+            entry[1] = self._read(entry[0])
+        except Exception:
+            self._drop(entry)
+            raise
+        self.publisher = entry[1][1]
+
+    def _drop(self, last: list[Any]) -> None:
+        """Remove this entry and all before it."""
+        with self._lock:
+            while self._queue:
+                if self._queue.popleft() is last:
+                    break
 
 
 class Showing:

@@ -3,23 +3,17 @@
 from sim_viewer.rviz.display_type import DisplayType
 from sim_viewer.rviz.displays import (
     camera,
-    cloud,
     frames,
-    grid,
-    image,
     interactive,
     markers,
     occupancy,
-    path,
-    point,
+    points,
     poses,
-    range,
-    robot,
-    scan,
+    shapes,
 )
 
 TYPES: dict[str, DisplayType] = {kind.name: kind for kind in (
-    grid.GRID, grid.AXES, frames.TYPE, robot.TYPE, scan.TYPE, occupancy.TYPE, path.PATH,
-    poses.ARRAY, poses.STAMPED, poses.ODOMETRY, poses.WITH_COVARIANCE, path.POLYGON,
-    markers.MARKER, markers.ARRAY, cloud.TYPE, point.TYPE, range.TYPE, image.TYPE,
-    camera.TYPE, interactive.TYPE)}
+    shapes.GRID, shapes.AXES_AT_A_FRAME, frames.TF, frames.ROBOT_MODEL, points.LASER_SCAN,
+    occupancy.TYPE, shapes.PATH, poses.ARRAY, poses.STAMPED, poses.ODOMETRY, poses.WITH_COVARIANCE,
+    shapes.POLYGON, markers.MARKER, markers.ARRAY, points.POINT_CLOUD, shapes.POINT, shapes.RANGE,
+    camera.IMAGE, camera.CAMERA, interactive.TYPE)}

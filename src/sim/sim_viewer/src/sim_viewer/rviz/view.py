@@ -11,13 +11,11 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.formats.urdf.visuals import read_robot_visuals
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.rendering.scene_text import SceneContent
-from sim_viewer.context import Node
-from sim_viewer.meshes import Meshes
-from sim_viewer.page_scene import page_scene
-from sim_viewer.pictures import to_jpeg
-from sim_viewer.registry import Refused
-from sim_viewer.robot_source import LIGHT, workspace_files
+from sim_viewer.images import to_jpeg
+from sim_viewer.page_scene import Meshes, page_scene
+from sim_viewer.registry import Node, Refused
 from sim_viewer.rviz.display_type import NoTransform, Problem
+from sim_viewer.scene_sources import LIGHT, workspace_files
 from sim_viewer.tools.clock import SharedClock
 from sim_viewer.transforms import NoPose, Transforms
 

@@ -11,6 +11,7 @@ import rospy
 from roslib.message import get_message_class
 
 from sim_viewer.registry import Refused
+from sim_viewer.tools import names
 
 OLDEST = 1.0  # s that an answer may be old
 
@@ -76,3 +77,10 @@ def asked(ask: Callable[[], Any]) -> Any:
                       "start roscore or your launch file, and this page comes back") from None
     except rosgraph.MasterException as error:
         raise Refused(f"the ROS master refused: {error}") from None
+
+
+def simulator_name(state: SystemState) -> str:
+    """The node that can be paused; /gazebo if there is none or it is one of several."""
+    found = sorted(service.removesuffix(names.PAUSE) for service in state.services
+                   if service.endswith(names.PAUSE))
+    return names.GAZEBO if names.GAZEBO in found or not found else found[0]

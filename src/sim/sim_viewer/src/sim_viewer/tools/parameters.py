@@ -8,8 +8,8 @@ import rosgraph
 import yaml
 
 from sim_viewer.registry import Refused, operation
-from sim_viewer.tools.forms import load_yaml
 from sim_viewer.tools.master import asked, connect
+from sim_viewer.tools.messages import load_yaml
 
 MOST_SHOWN = 200  # letters in the list; all of them when one parameter is opened
 MOST_OPENED = 200_000

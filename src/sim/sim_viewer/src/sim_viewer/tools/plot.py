@@ -8,8 +8,8 @@ from typing import Any
 from sim_viewer.registry import Refused, argument, operation, watchable
 from sim_viewer.subscription import Subscription
 from sim_viewer.tools.clock import SharedClock
-from sim_viewer.tools.fields import expand, numeric_paths, parse_steps, split_topic, value
 from sim_viewer.tools.master import MasterView
+from sim_viewer.tools.messages import expand, numeric_paths, parse_steps, split_topic, value
 from sim_viewer.tools.paced import Paced
 
 MOST_LINES = 24  # of one plot

@@ -11,9 +11,8 @@ import rosservice
 from roslib.message import get_service_class
 
 from sim_viewer.registry import Refused, operation
-from sim_viewer.tools.forms import fill, template
 from sim_viewer.tools.master import MasterView
-from sim_viewer.tools.message_text import to_text
+from sim_viewer.tools.messages import fill, template, to_text
 
 TIMEOUT = 30.0  # s to wait for an answer
 MOST_AT_ONCE = 8  # calls of all pages

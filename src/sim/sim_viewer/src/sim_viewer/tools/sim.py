@@ -14,10 +14,9 @@ from std_srvs.srv import Empty
 from sim_viewer.registry import Refused, operation, watchable
 from sim_viewer.tools import names
 from sim_viewer.tools.clock import FactorMeter, SharedClock
-from sim_viewer.tools.master import MasterView
+from sim_viewer.tools.master import MasterView, simulator_name
 from sim_viewer.tools.paced import Paced
 from sim_viewer.tools.services import Calls
-from sim_viewer.tools.simulator_name import simulator_name
 
 PAUSE_ASKED = 1.0  # s between two queries whether it is paused
 ANSWER_TIME = 0.5  # s to wait for an answer

@@ -11,7 +11,7 @@ import rospy
 from sim_viewer.registry import argument, watchable
 from sim_viewer.subscription import decode
 from sim_viewer.tools.master import SystemState
-from sim_viewer.tools.message_text import MOST_ELEMENTS, to_text
+from sim_viewer.tools.messages import MOST_ELEMENTS, to_text
 from sim_viewer.tools.paced import Paced
 
 RATE_WINDOW = 5.0  # s of wall time that a rate is measured over

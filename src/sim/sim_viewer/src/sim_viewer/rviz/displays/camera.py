@@ -1,7 +1,8 @@
-"""rviz/Camera: a camera's image, and the scene as the camera sees it.
+"""rviz/Image: an image beside the view, and rviz/Camera: with the scene as the camera sees it.
 
-As in rviz, the view is given by the pose of the image's frame at its stamp and by the projection
-matrix P of the CameraInfo beside its topic.
+An image is the page's own image stream (images.py). As in rviz, the camera's view is given by the
+pose of the image's frame at its stamp and by the projection matrix P of the CameraInfo beside its
+topic.
 """
 
 from dataclasses import dataclass
@@ -18,6 +19,18 @@ COMPRESSED = "/compressed"
 RENDERINGS = ("background and overlay", "background", "overlay")
 WIDTH_PX = 640  # of the image that is sent, at most
 LARGEST_PX, LEAST_PX = 1 << 14, 1e-6  # a side of an image, a focal length
+
+
+class Picture(Drawer):
+    """Draws nothing in the view."""
+
+    def draw(self, view: View) -> list[Part]:
+        return []
+
+
+IMAGE = DisplayType(
+    "rviz/Image", Picture, messages=("sensor_msgs/Image", "sensor_msgs/CompressedImage"),
+    topic="/camera/rgb/image_raw", topic_key="Image Topic")
 
 
 @dataclass(frozen=True)
@@ -85,7 +98,7 @@ def info_topic(picture_topic: str) -> str:
     return picture_topic.removesuffix(COMPRESSED).rpartition("/")[0] + "/camera_info"
 
 
-TYPE = DisplayType(
+CAMERA = DisplayType(
     "rviz/Camera", Camera, messages=("sensor_msgs/Image", "sensor_msgs/CompressedImage"),
     topic="/camera/rgb/image_raw", topic_key="Image Topic", beside="sensor_msgs/CameraInfo",
     beside_topic=info_topic, most_bytes=64 << 20, options=(

@@ -2,6 +2,10 @@
 
 The first part lists markers and controls; each of the others belongs to a control and is in its
 frame. The page places those parts: they follow the mouse, or face the viewer.
+
+A server's messages on `.../update_full` have all of its markers; each on `.../update` has changes,
+with a sequence number that is one larger, or says that there are none. A server sends both after
+each change, so a client that has missed changes gets all markers with the next change.
 """
 
 from collections import deque
@@ -9,13 +13,18 @@ from itertools import islice
 from typing import Any
 
 from bullet_sim.pose import Pose
-from sim_viewer.rviz.display_type import ERROR, WARNING, DisplayType, Drawer, Problem, View
-from sim_viewer.rviz.displays.interactive_marker import Control, InteractiveMarker
-from sim_viewer.rviz.displays.interactive_server import LONGEST_NAME, Server
+from sim_viewer.rviz.display_type import ERROR, OK, WARNING, DisplayType, Drawer, Problem, View
+from sim_viewer.rviz.displays.interactive_marker import Control, InteractiveMarker, unit_pose
 from sim_viewer.rviz.displays.markers import Shown, merged, mesh_parts
 from sim_viewer.rviz.drawing import Part
 from sim_viewer.rviz.options import Option
 
+CHANGED = 1  # type of an update that has changes
+MOST_MARKERS = 500
+LONGEST_NAME = 200  # characters
+SILENCE = 1.0  # s after which a silent server is reported; servers send twice as often
+WAITING = (WARNING, "Waiting for all markers, on update_full")
+MISSED = (ERROR, "Update sequence number is out of order.")
 UPDATE = "/update"  # after the markers' namespace
 MOST_SERVERS = 20  # on a topic
 MOST_CONTROLS = 1000  # that the page draws
@@ -23,6 +32,86 @@ MOST_SHAPES = 5000  # of all controls together
 MOST_STATUSES = 20
 MOST_DRAGS = 100  # that wait for the next drawing
 Key = str  # of a marker, for the page: server and name
+
+
+class Server:
+    """One server's markers: `markers`, by name."""
+
+    def __init__(self) -> None:
+        self.markers: dict[str, InteractiveMarker] = {}
+        self._number: int | None = None  # of the last change
+        self._followed = False  # whether all markers are still to be sent again after that change
+        self._missed = False
+        self._fresh = True  # whether it has sent anything since the last `status`
+        self._heard = 0.0  # s, the last `status` that followed a message
+
+    def begin(self, init: Any) -> bool:
+        """Take all markers; returns whether that is news. Problem if some cannot be used."""
+        self._fresh = True
+        if self._followed and init.seq_num == self._number:
+            self._followed = False
+            return False
+        self._number, self._missed, self._followed = init.seq_num, False, False
+        markers: dict[str, InteractiveMarker] = {}
+        try:
+            _insert(init.markers, markers)
+        finally:
+            self.markers = markers  # at once, since other threads look for markers meanwhile
+        return True
+
+    def update(self, update: Any) -> bool:
+        """Take changes; returns whether there are any. Problem if some cannot be used."""
+        self._fresh = True
+        if self._number is None:
+            return False
+        ahead = update.seq_num - self._number
+        if update.type != CHANGED or ahead != 1:
+            self._missed = ahead > 0
+            return False
+        self._number, self._missed, self._followed = update.seq_num, False, True
+        for name in update.erases:
+            self.markers.pop(name, None)
+        try:
+            self._move(update.poses)
+        finally:
+            _insert(update.markers, self.markers)
+        return True
+
+    def status(self, wall: float) -> tuple[str, str]:
+        """The status as rviz lists it; `wall` is the present time, s, of a monotonic clock."""
+        if self._fresh:
+            self._heard, self._fresh = wall, False
+        if self._number is None:
+            return WAITING
+        if self._missed:
+            return MISSED
+        if wall - self._heard > SILENCE:
+            return WARNING, f"No update received for {round(wall - self._heard)} seconds."
+        return OK, "OK"
+
+    def _move(self, poses: list[Any]) -> None:
+        problem = None
+        for one in poses:
+            try:
+                if one.name in self.markers:
+                    self.markers[one.name].move(unit_pose(one.pose), one.header)
+            except Problem as found:
+                problem = Problem(f"{one.name:.40}: {found}")
+        if problem:
+            raise problem
+
+
+def _insert(messages: list[Any], markers: dict[str, InteractiveMarker]) -> None:
+    problem = None
+    for message in messages:
+        if len(message.name) > LONGEST_NAME:
+            problem = Problem(f"the name {message.name:.40} is longer than {LONGEST_NAME}")
+        elif message.name not in markers and len(markers) >= MOST_MARKERS:
+            problem = Problem(f"showing {MOST_MARKERS} markers: more are left out")
+        else:
+            markers[message.name] = InteractiveMarker(message)
+    if problem:
+        raise problem
 
 
 class Interactive(Drawer):
