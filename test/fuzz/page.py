@@ -15,9 +15,9 @@ from unittest import mock
 
 from mutating import BINARY, TEXT, WORDS, spoilt
 from sim_viewer import hub, registry
-from sim_viewer.registry import Context, Node
-from sim_viewer.page_scene import Meshes
 from sim_viewer.options import Options
+from sim_viewer.page_scene import Meshes
+from sim_viewer.registry import Context, Node
 from sim_viewer.server import Server
 from target import Target
 
