@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Turns Twist or AckermannDriveStamped into commands for the car's six joint controllers.
+"""motor_control_page.py with stops, limits, Ackermann steering and AckermannDriveStamped.
 
 The car stops if no command comes for ~timeout, and when the node that sends commands ends: at once
 if no other publisher is connected to that topic, else after ~timeout.

@@ -1,12 +1,16 @@
 """When the car drives, when it stands, and within what limits."""
 
 import math
+import runpy
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import MagicMock
 
 import pytest
+import rospy
 from car_control.motor import Drive, Motor, MotorSettings, controller_commands
 from car_control.settings import load_settings
+from geometry_msgs.msg import Twist
 
 CONFIG = Path(__file__).parents[1] / "config" / "car_control.yaml"
 PAGE = load_settings(MotorSettings, CONFIG, "motor_control")
@@ -85,3 +89,16 @@ def test_a_straight_drive_turns_all_wheels_alike():
 def test_a_car_that_cannot_steer_so_far_is_refused():
     with pytest.raises(ValueError, match=r"'max_steering_angle' must be less than 1\.047 rad"):
         replace(SETTINGS, wheelbase=0.2, max_steering_angle=1.1, front_track=0.23094)
+
+
+def test_the_tutorial_s_node_sends_what_ours_does_by_its_law(monkeypatch):
+    told = {}
+    monkeypatch.setattr(rospy, "Subscriber", MagicMock())
+    monkeypatch.setattr(rospy, "Publisher", lambda topic, *_, **__: MagicMock(
+        publish=lambda value: told.__setitem__(topic, value)))
+    page = runpy.run_path(str(CONFIG.parents[1] / "scripts" / "motor_control_page.py"))
+    command = Twist()
+    command.linear.x, command.angular.z = 1.5, -0.2
+    page["MotorControl"]().take(command)
+    ours = controller_commands(PAGE, Drive(1.5, -0.2))
+    assert told == {f"{PAGE.namespace}/{name}/command": value for name, value in ours.items()}

@@ -4,13 +4,13 @@ The drives are those of evaluation.tracking.kinematic: the simulator's own pictu
 """
 
 import math
+import runpy
 from pathlib import Path
 
 import numpy as np
 import pytest
 import rospkg
 from ai_robot_tracking.follower import Follower, FollowerSettings
-from ai_robot_tracking.page_law import PageSettings, largest_blob, page_command
 from ai_robot_tracking.scenes.scene import (
     HALF_REACH,
     HIDDEN_TIME,
@@ -87,10 +87,12 @@ def test_the_follower_keeps_its_distance(kind, tmp_path):
 
 
 def test_the_plain_tracker_reaches_what_stands(tmp_path):
-    settings = load_settings(PageSettings, CONFIG, "visual_tracker", {})
+    page = runpy.run_path(str(CONFIG.parents[1] / "scripts" / "visual_tracker.py"))
+    settings = load_settings(page["PageSettings"], CONFIG, "visual_tracker", {})
 
     def law(picture: np.ndarray, _time: float) -> tuple[float, float]:
-        return page_command(largest_blob(picture, settings), picture.shape[1], settings)
+        blob = page["largest_blob"](picture, settings)
+        return page["page_command"](blob, picture.shape[1], settings)
 
     assert chase(STATIC, 2, law, None, tmp_path).outcome == "reached"
 

@@ -1,6 +1,7 @@
-"""Lets the tests import drawn_room."""
+"""Lets the tests import drawn_room, and the scripts."""
 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
+FOLDER = Path(__file__).parent
+sys.path[:0] = [str(FOLDER), str(FOLDER.parent / "scripts")]

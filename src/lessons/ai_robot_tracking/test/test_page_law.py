@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
-from ai_robot_tracking.page_law import PageSettings, largest_blob, page_command
 from ai_robot_tracking.red_target import Blob
 from ai_robot_tracking.settings import load_settings
 from drawn_room import cylinder, draw_cylinder, room
+from visual_tracker import PageSettings, largest_blob, page_command
 
 CONFIG = Path(__file__).resolve().parents[1] / "config" / "tracking_params.yaml"
 SETTINGS = load_settings(PageSettings, CONFIG, "visual_tracker", {})

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 import yaml
 from ai_robot_tracking.follower import FollowerSettings
-from ai_robot_tracking.page_law import PageSettings
 from ai_robot_tracking.settings import SettingsError, load_settings
+from visual_tracker import PageSettings
 
 CONFIG = Path(__file__).resolve().parents[1] / "config" / "tracking_params.yaml"
 SECTIONS = {"visual_tracker": PageSettings, "visual_tracker_pid": FollowerSettings}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Keeps the lane by camera and stops for people at zebra crossings: one command per image.
+"""The tutorial's lane keeper, and also: a mask for shade, search, people at zebra crossings.
 
 车道保持：每收到一帧图像发一次速度指令，斑马线前有人则停车。
 """

@@ -1,14 +1,20 @@
 """The page's nodes without a master, and the commands behind its verbs."""
 
+import ast
 import importlib.util
 import os
 import subprocess
 from pathlib import Path
+from types import SimpleNamespace
 from unittest.mock import MagicMock
 
+import cv2
 import numpy as np
 import pytest
 from drawn_lane import draw
+from lane_keeping.binarise import line_mask
+from lane_keeping.methods import sliding_windows
+from lane_keeping.road_view import road_view
 from lane_keeping.settings import load_settings
 from sensor_msgs.msg import Image
 
@@ -20,7 +26,8 @@ def started(name, node, **parameters):
     spec = importlib.util.spec_from_file_location(name, PACKAGE / "scripts" / f"{name}.py")
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
-    script.rospy, script.cv2 = MagicMock(), MagicMock()
+    script.rospy = MagicMock()
+    script.cv2 = SimpleNamespace(**{**vars(cv2), "imshow": MagicMock(), "waitKey": MagicMock()})
     script.rospy.get_param = lambda key, default: parameters.get(key.lstrip("~"), default)
     return script, getattr(script, node)()
 
@@ -43,6 +50,30 @@ def test_the_controller_drives_along_the_lane_and_shows_three_windows():
     assert speed in (1.0, 0.5) and abs(turn) <= 2.0
     shown = [call.args[0] for call in script.cv2.imshow.call_args_list]
     assert shown == ["ROI", "ROI-II", "Lane Detection"]
+
+
+@pytest.mark.parametrize("lane", [
+    {}, {"beside": 0.1}, {"beside": -0.1, "turned": 0.15}, {"curvature": 0.4}, {"curvature": -0.6},
+    {"sides": (1,)}, {"sides": (-1,)}, {"sides": (1,), "curvature": 0.4}], ids=str)
+def test_it_drives_as_our_sliding_windows_with_the_pages_numbers(lane):
+    pixels = draw(SETTINGS, **lane)
+    _, node = started("visual_motion_controller", "VisualMotionController")
+    node.process_and_control(picture(pixels))
+    ((speed, turn),) = commands(node)
+    wanted = sliding_windows.plan(line_mask(pixels, SETTINGS), road_view(SETTINGS, 640, 480),
+                                  SETTINGS)
+    assert speed == wanted.speed
+    assert turn == pytest.approx(wanted.turn, abs=0.05 if "sides" in lane else 1e-6)
+
+
+@pytest.mark.parametrize("name", ["learning_node", "visual_motion_controller"])
+def test_a_page_s_node_is_one_file_without_ours(name):
+    tree = ast.parse((PACKAGE / "scripts" / f"{name}.py").read_text(encoding="utf-8"))
+    modules = {name.name for node in ast.walk(tree) if isinstance(node, ast.Import)
+               for name in node.names}
+    modules |= {node.module for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    assert modules <= {"itertools", "time", "cv2", "cv_bridge", "numpy", "rospy",
+                       "geometry_msgs.msg", "sensor_msgs.msg"}
 
 
 @pytest.mark.parametrize("debug_mode", [True, False])
