@@ -23,7 +23,7 @@ fi
 
 # The ROS master that the caller set, for scripts that use it.
 given_master=("${ROS_MASTER_URI:-}" "${ROS_HOSTNAME:-}" "${ROS_IP:-}")
-export CALLERS_ROS_MASTER_URI=${given_master[0]}  # for run_session.master_choice
+export CALLERS_ROS_MASTER_URI=${given_master[0]}  # for run_session.master
 
 # Another python3, an active venv or conda, or a sourced ROS workspace must not leak in.
 unset "${!PYTHON@}" "${!CONDA_@}" "${!ROS_@}" VIRTUAL_ENV CMAKE_PREFIX_PATH LD_LIBRARY_PATH \
@@ -59,7 +59,7 @@ choose_master() {
     # Another machine cannot reach this one as localhost: let rospy use this machine's own name.
     elif [[ ! $ROS_MASTER_URI =~ ^http://(localhost|127\.) ]]; then unset ROS_HOSTNAME; fi
   else
-    ROS_MASTER_URI=$(python3 -m run_session.master_choice) || return 1  # callers' || turns set -e off
+    ROS_MASTER_URI=$(python3 -m run_session.master) || return 1  # callers' || turns set -e off
     export ROS_MASTER_URI
     [ "$ROS_MASTER_URI" = "$usual" ] ||
       say $"Another ROS master is running on this machine. In each further terminal type: export ROS_MASTER_URI=$ROS_MASTER_URI"

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from run_session.cpu import Process
 from run_session.failure import RunError
+from run_session.processes import Process
 
 sys.path.insert(0, str(Path(__file__).parent / "soak"))
 import samples

@@ -24,8 +24,7 @@ from faults import faults_of, set_loopback
 from restarts import PlayByHand
 from rounds import RESULTS, Play, drawn
 
-from evaluation.trial.command_line import LARGEST_SEED, Parser, one_of
-from evaluation.trial.program import run_program
+from evaluation.command_line import LARGEST_SEED, Parser, one_of, run_program
 from run_session.failure import RunError
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -15,7 +15,7 @@ from drive import LAUNCH, Watched
 from members import matching, send, wait_until
 
 from run_session.launch import DIED
-from run_session.master_choice import USUAL, is_up
+from run_session.master import USUAL, is_up
 from run_session.processes import read_log
 
 MASTER = USUAL  # not shared: a round has a network of its own

@@ -20,8 +20,7 @@ from campaign import Report, replay, run
 from target import ROOT
 from targets import TARGETS
 
-from evaluation.trial.command_line import LARGEST_SEED, Parser, number, one_of
-from evaluation.trial.program import run_program
+from evaluation.command_line import LARGEST_SEED, Parser, number, one_of, run_program
 from run_session.failure import RunError
 
 OUT = ROOT / "out" / "fuzz"

@@ -23,8 +23,7 @@ from changes import PACKAGES, ROOT, Equal, Mutant, drawn
 from recording import Recording, recording
 from trying import outcome, warm_up
 
-from evaluation.trial.command_line import LARGEST_SEED, Parser
-from evaluation.trial.program import run_program
+from evaluation.command_line import LARGEST_SEED, Parser, run_program
 
 OUT = ROOT / "out" / "mutants"
 GOAL = 0.85  # of those that are not equal

@@ -9,7 +9,7 @@ from pathlib import Path
 from samples import CLOCK, Sample
 
 from evaluation.picture import chart
-from evaluation.trial.report import grouped, table
+from evaluation.report import grouped, table
 from run_session.failure import RunError
 
 WARM_UP = 600.0  # s, wall; of shorter runs a third

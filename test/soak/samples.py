@@ -12,8 +12,8 @@ import rospy
 from gazebo_msgs.srv import GetModelState
 from rosgraph_msgs.msg import Clock
 
-from run_session import names
-from run_session.cpu import processes
+from run_session import simulator
+from run_session.processes import processes
 from run_session.simulator import call
 
 PERIOD = 10.0  # s, wall, between two samples
@@ -73,5 +73,5 @@ class Sampler:
 
 def _place(robot: str) -> tuple[float, float]:
     """x and y, m. RunError if there is no such model."""
-    position = call(names.POSE, GetModelState, robot, "").pose.position
+    position = call(simulator.POSE, GetModelState, robot, "").pose.position
     return position.x, position.y

@@ -23,8 +23,7 @@ from beside import Beside
 from growth import draw, judge
 from samples import FEWEST, PERIOD, Sample, Sampler
 
-from evaluation.trial.command_line import Parser, number, one_of
-from evaluation.trial.program import run_program
+from evaluation.command_line import Parser, number, one_of, run_program
 from run_session.launch import Launched
 from run_session.session import Session
 from run_session.simulator import models

@@ -18,11 +18,10 @@ from gazebo_msgs.srv import GetWorldProperties
 from sensor_msgs.msg import Image
 from std_srvs.srv import Empty
 
-from evaluation.colours import PAPER, TEXT, bgr
-from evaluation.plan import FONT, write_text
+from evaluation.picture import FONT, PAPER, TEXT, bgr, write_text
 from run_session.failure import RunError
 from run_session.launch import Launched
-from run_session.names import WORLD
+from run_session.simulator import WORLD
 
 WINDOW_WIDTH_PX, BAR_PX, GAP_PX = 640, 34, 14
 LETTER_PX, LINE_PX = 10, 21

@@ -8,7 +8,7 @@ import rospy
 from lane_keeping.world.scenery import load_crossings
 from nav_msgs.msg import Odometry
 
-from evaluation.lane.recording import CAR, Moment, line_of
+from evaluation.lane_encounters import CAR, Moment, line_of
 from run_session.simulator import place_of
 
 

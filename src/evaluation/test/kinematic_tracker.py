@@ -21,7 +21,7 @@ from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.world import World
 from evaluation.lap import Sample
-from evaluation.tracking.score import CAMERA_X, HALF_FOV, TrackScorer
+from evaluation.track_score import CAMERA_X, HALF_FOV, TrackScorer
 
 CAMERA_HEIGHT = 0.25        # m
 MOST_ACCELERATION = np.array([2.0, 8.0])  # m/s^2, rad/s^2, as the drive's controller allows

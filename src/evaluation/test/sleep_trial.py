@@ -9,7 +9,7 @@ import signal
 import time
 from dataclasses import asdict, dataclass
 
-from evaluation.trial.protocol import Case, ReportedTrial
+from evaluation.trial import Case, ReportedTrial
 from run_session.failure import RunError
 
 

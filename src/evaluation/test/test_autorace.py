@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.autorace.judge import WAY, Sample, score
-from evaluation.autorace.trial import RaceTrial
+from evaluation.autorace import RaceTrial
+from evaluation.autorace_judge import WAY, Sample, score
 from run_session.failure import RunError
 
 SCRIPT = Path(__file__).parent.parent / "scripts" / "autorace.py"

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.avoid import trial as drive
-from evaluation.avoid.trial import AvoidTrial
+from evaluation import avoid as drive
+from evaluation.avoid import AvoidTrial
 from run_session.failure import RunError
 
 pytestmark = pytest.mark.processes

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from evaluation.session.course_file import load_course
-from evaluation.trial.program import NOT_RUN, run_program
+from evaluation.command_line import NOT_RUN, run_program
+from run_session.course_file import load_course
 from run_session.failure import RunError
 
 COURSES = Path(__file__).parent.parent / "courses"

@@ -16,11 +16,11 @@ from racecar_description.track.closed_line import build_track
 from racecar_description.track.track_file import load_track_file
 from sensor_msgs.msg import Image
 
-from evaluation.course_run.film import CourseFilm
+import evaluation.film
+from evaluation.course_run import CourseFilm
+from evaluation.film import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, FilmFile, fit
 from evaluation.lap import LapScorer, Sample
-from evaluation.session import encoders
-from evaluation.session.course_file import load_course
-from evaluation.session.film import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, FilmFile, fit
+from run_session.course_file import load_course
 
 pytestmark = pytest.mark.processes  # encoders, and limits of time
 TRACK = Path(__file__).parent.parent / "tracks" / "course.yaml"
@@ -65,7 +65,7 @@ def test_the_encoder_loads_before_the_first_picture_comes(tmp_path, monkeypatch)
 def test_an_encoder_that_cannot_begin_is_no_end_of_the_drive(tmp_path, monkeypatch):
     monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: None)
     film = new_film(tmp_path / "nowhere" / "run.mp4")
-    monkeypatch.setattr(encoders.tempfile, "TemporaryFile", no_room)
+    monkeypatch.setattr(film.tempfile, "TemporaryFile", no_room)
     film.start()
     assert film.close() == ""
 
@@ -93,7 +93,7 @@ def test_the_camera_keeps_its_proportions(size_px, view_px):
 PAGE = np.zeros((360, 640, 3), np.uint8)
 
 
-@pytest.mark.parametrize("make", [encoders.FfmpegEncoder, encoders.OpenCvEncoder])
+@pytest.mark.parametrize("make", [evaluation.film.FfmpegEncoder, evaluation.film.OpenCvEncoder])
 def test_a_full_disk_is_said(tmp_path, make):
     path = tmp_path / "run.mp4"
     path.symlink_to("/dev/full")
@@ -117,7 +117,7 @@ FILMS_ON_A_SMALL_DISK = """
 import subprocess, sys
 from pathlib import Path
 import numpy as np
-from evaluation.session.film import FilmFile
+from evaluation.film import FilmFile
 disk = Path(sys.argv[1])
 subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", str(disk)], check=True)
 film = FilmFile(disk / "run.mp4")
@@ -136,8 +136,8 @@ def test_a_disk_that_gets_full_meanwhile_leaves_no_half_a_film(tmp_path):
 
 
 def test_an_encoder_that_hangs_holds_nothing_up_and_leaves_no_broken_film(tmp_path, monkeypatch):
-    monkeypatch.setattr(encoders, "WRITE_TIME", 0.2)
-    monkeypatch.setattr(encoders, "FINISH_TIME", 0.2)
+    monkeypatch.setattr(evaluation.film, "WRITE_TIME", 0.2)
+    monkeypatch.setattr(evaluation.film, "FINISH_TIME", 0.2)
     film = FilmFile(tmp_path / "run.mp4")
     film._add(PAGE)
     encoder = film._writer._process

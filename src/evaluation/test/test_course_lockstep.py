@@ -5,10 +5,9 @@ import rospy
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import CameraInfo
 
-from evaluation.session.course_file import load_course
-from run_session.connections import Connections
-from run_session.frames import FrameCount, frame_figures
-from run_session.observer import missing_connection, missing_controller
+from run_session.course_file import load_course
+from run_session.master import Connections
+from run_session.observer import FrameCount, frame_figures, missing_connection, missing_controller
 
 COURSE = load_course("course")
 ME, SIMULATOR, FOLLOWER = "/course_run", "/gazebo", "/follower"

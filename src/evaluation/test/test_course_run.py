@@ -14,9 +14,9 @@ from pathlib import Path
 import cv2
 import pytest
 
-from evaluation.course_run.main import CourseRun
-from evaluation.trial.live import run_program_of
-from evaluation.trial.program import NOT_RUN
+from evaluation.command_line import NOT_RUN
+from evaluation.course_run import CourseRun
+from evaluation.live import run_program_of
 
 pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parent.parent / "scripts" / "course_run.py"

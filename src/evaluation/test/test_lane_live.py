@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from evaluation.lane.recording import CAR, read_recording
+from evaluation.lane_encounters import CAR, read_recording
 
 pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parent.parent / "scripts" / "course_run.py"

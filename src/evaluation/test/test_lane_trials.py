@@ -8,14 +8,30 @@ import numpy as np
 import pytest
 from lane_keeping.world.scenery import load_crossings
 
-from evaluation.lane.comparison import LaneComparison
-from evaluation.lane.encounters import Encounter, distance, judge, nearest_ever
-from evaluation.lane.outcomes import encounter_table, from_report, lap_table
-from evaluation.lane.recording import CAR, Moment, last, line_of, read_recording
-from evaluation.lane.trial import BOUNDS, LaneTrial, known_methods, lane_case
-from evaluation.laps.disturbance import draw
-from evaluation.trial.report import write_json
-from evaluation.trial.runner import run_trial
+from evaluation.lane_encounters import (
+    CAR,
+    Encounter,
+    Moment,
+    distance,
+    judge,
+    last,
+    line_of,
+    nearest_ever,
+    read_recording,
+)
+from evaluation.lane_trials import (
+    BOUNDS,
+    LaneComparison,
+    LaneTrial,
+    encounter_table,
+    from_report,
+    known_methods,
+    lane_case,
+    lap_table,
+)
+from evaluation.lap import draw
+from evaluation.report import write_json
+from evaluation.trial import run_trial
 from run_session.failure import RunError
 
 CROSSINGS = load_crossings()

@@ -8,21 +8,22 @@ import numpy as np
 import pytest
 from sensor_msgs.msg import LaserScan
 
-from evaluation.house.records import Records
-from evaluation.localisation import trials
-from evaluation.localisation.outcomes import (
+from evaluation import localisation_drive
+from evaluation.command_line import NOT_RUN
+from evaluation.house import Records
+from evaluation.localisation_drive import (
     FINDING,
     KIDNAPS,
+    SPEED,
     Load,
+    Steering,
     Tracking,
     Trial,
     right_since,
     searched,
 )
-from evaluation.localisation.trial import LocalisationTrial
-from evaluation.localisation.trials import SPEED, Steering
-from evaluation.trial.program import NOT_RUN
-from evaluation.trial.runner import run_trial
+from evaluation.localisation_trials import LocalisationTrial
+from evaluation.trial import run_trial
 from run_session.failure import RunError
 
 BEARINGS = np.radians(np.arange(-180.0, 180.0))
@@ -166,12 +167,12 @@ def test_a_scan_that_comes_late_does_not_set_it_going_again(monkeypatch):
     """The callback may be at work when nobody listens any more."""
     takes, speeds = [], []
     publisher = SimpleNamespace(publish=lambda command: speeds.append(command.linear.x))
-    monkeypatch.setattr(trials.rospy, "Publisher", lambda *_, **__: publisher)
-    monkeypatch.setattr(trials.rospy, "Subscriber", lambda _topic, _kind, take, **_: (
+    monkeypatch.setattr(localisation_drive.rospy, "Publisher", lambda *_, **__: publisher)
+    monkeypatch.setattr(localisation_drive.rospy, "Subscriber", lambda _topic, _kind, take, **_: (
         takes.append(take), SimpleNamespace(unregister=lambda: None))[1])
     scan = LaserScan(angle_min=0.0, angle_increment=np.radians(1.0), range_min=0.1, range_max=3.5,
                      ranges=[3.0] * 360)
-    with trials.wandering(0, lambda: True):
+    with localisation_drive.wandering(0, lambda: True):
         takes[0](scan)
     assert speeds == [SPEED, 0.0]
     takes[0](scan)

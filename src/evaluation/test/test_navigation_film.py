@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 import rospy
 
-from evaluation.house.house_file import load_house
-from evaluation.house.records import Records
-from evaluation.navigation import pictures
-from evaluation.navigation.score import Result
+from evaluation import navigate_pictures
+from evaluation.house import Records, load_house
+from evaluation.navigate_score import Result
 
 
 class Forgetful:
@@ -32,7 +31,7 @@ class Forgetful:
 @pytest.fixture
 def film(tmp_path):
     ground = load_house("house").ground()
-    return pictures.Film(tmp_path / "run.mp4", ground, Forgetful(ground.walls), Result())
+    return navigate_pictures.Film(tmp_path / "run.mp4", ground, Forgetful(ground.walls), Result())
 
 
 def test_a_part_that_begins_anew_while_a_page_is_drawn_ends_no_film(film):
@@ -43,7 +42,7 @@ def test_the_film_keeps_simulated_time_where_pictures_are_missing(film, monkeypa
     def wait_for_message(*_):
         raise rospy.ROSException("no camera")
 
-    monkeypatch.setattr(pictures.rospy, "wait_for_message", wait_for_message)
+    monkeypatch.setattr(navigate_pictures.rospy, "wait_for_message", wait_for_message)
     added, times = [], [3.2, 3.4, 4.1, 6.0, 999.0]
     film._add = lambda _page, count=1: added.append(count)
     film._page = lambda _records: None
@@ -56,4 +55,4 @@ def test_the_film_keeps_simulated_time_where_pictures_are_missing(film, monkeypa
 
     film._ended = SimpleNamespace(wait=wait)
     film._film()
-    assert added == [1, 1, 2, pictures.LONGEST_GAP]
+    assert added == [1, 1, 2, navigate_pictures.LONGEST_GAP]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
-from evaluation.house.house_file import load_house
+from evaluation.house import load_house
 from nav_algorithms.grid import OCCUPIED
 from nav_algorithms.likelihood_field import distances
 from run_session.failure import RunError

@@ -7,28 +7,28 @@ import subprocess
 import numpy as np
 import pytest
 
-from evaluation.colours import bgr, lap_colour
-from evaluation.house.house_file import load_house
-from evaluation.house.records import Records
-from evaluation.navigation.driver import Way
-from evaluation.navigation.main import NavigationRun
-from evaluation.navigation.new_map import keep_map, place_for_map, read_map_frame
-from evaluation.navigation.pictures import CLEAR, map_picture
-from evaluation.navigation.report import lines, summarize
-from evaluation.navigation.score import (
+from evaluation.house import Records, load_house
+from evaluation.navigate import NavigationRun
+from evaluation.navigate_parts import keep_map, place_for_map, read_map_frame
+from evaluation.navigate_pictures import CLEAR, map_picture
+from evaluation.navigate_score import (
     Navigation,
     Pace,
     Result,
+    Way,
+    lines,
     localisation,
     score_mapping,
     seen_of,
+    summarize,
 )
+from evaluation.picture import bgr, lap_colour
 from nav_algorithms.grid import OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.poses import compose, invert
 from run_session.failure import RunError
-from run_session.resources import find_package
+from run_session.files import find_package
 from trial_worlds.feelers import Gap
-from trial_worlds.ground import Ground
+from trial_worlds.house import Ground
 
 PACE = Pace(100.0, 200.0, {"move_base": 40.0})
 SHIFT = np.array([0.5, -0.2, 0.3])  # the map's frame in the world's

@@ -7,25 +7,25 @@ from dataclasses import asdict, replace
 import cv2
 import pytest
 
-from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
-from evaluation.trial.runner import run_trial
-from evaluation.yards import trial as trial_module
-from evaluation.yards.outcomes import CROSSINGS, YARDS, Drive, summarize
-from evaluation.yards.pictures import write_sheets
-from evaluation.yards.trial import YardTrial
+from evaluation import navigation_trials as trial_module
+from evaluation.command_line import NOT_PASSED, NOT_RUN, PASSED
+from evaluation.navigation_trials import YardTrial, write_sheets
+from evaluation.trial import run_trial
+from evaluation.yard_judge import CROSSINGS, YARDS, DriveResult, summarize
 from run_session.failure import RunError
 from trial_worlds.crossing import draw_crossing
 from trial_worlds.yard import draw_yard
 
 
-def made(seed=0, repeat=0, **changes) -> Drive:
+def made(seed=0, repeat=0, **changes) -> DriveResult:
     """A good drive through a yard, or one that differs in this."""
-    usual = Drive(YARDS, seed, repeat, "reached", None, 20.0, 4.5, 16.0, 17.0, 0.05, None, [], 0,
-                  1.0, asdict(draw_yard(seed).difficulty))
+    usual = DriveResult(
+        YARDS, seed, repeat, "reached", None, 20.0, 4.5, 16.0, 17.0, 0.05, None, [], 0,
+        1.0, asdict(draw_yard(seed).difficulty))
     return replace(usual, **changes)
 
 
-def crossed(seed=0, **changes) -> Drive:
+def crossed(seed=0, **changes) -> DriveResult:
     """The same of one past a person."""
     return made(seed, **{"set": CROSSINGS, "to_obstacles": None, "to_person": 0.2,
                          "drawn": asdict(draw_crossing(seed)), **changes})
@@ -99,7 +99,7 @@ def test_a_summary_is_of_one_set_and_its_times_are_of_what_arrived():
 
 
 def test_pictures_are_drawn_of_what_there_is(tmp_path):
-    chart = importlib.import_module("evaluation.yards.pictures")
+    chart = importlib.import_module("evaluation.navigation_trials")
     drives = [made(0), made(0, 1, outcome="contact"), made(3, outcome="late"), crossed(2)]
     (tmp_path / "drives").mkdir()
     for each in drives[:2]:
@@ -113,7 +113,7 @@ def test_pictures_are_drawn_of_what_there_is(tmp_path):
 # --- from beginning to end
 
 
-def read_drives(out) -> list[Drive]:
+def read_drives(out) -> list[DriveResult]:
     return YardTrial().from_values(json.loads((out / "report.json").read_text()))
 
 
@@ -131,8 +131,8 @@ def trials(tmp_path, monkeypatch):
             judge.path = [(0.0, 0.0, 0.0, 0.0), (5.0, 1.0, 0.0, 0.0)]
             return found
 
-        for name, fake in (("Rig", lambda *_, **__: None), ("prepare", lambda *_: None),
-                           ("drive", drive)):
+        for name, fake in (("NavigationStack", lambda *_, **__: None), ("prepare", lambda *_: None),
+                           ("drive_task", drive)):
             monkeypatch.setattr(trial_module, name, fake)
         return run_trial(YardTrial(), [*options, "--out", str(tmp_path)])
 

@@ -5,10 +5,17 @@ import time
 import numpy as np
 import pytest
 
-from evaluation.yards import drive as driving
-from evaluation.yards.judge import OBSTACLE, PERSON, WALKED_INTO, Judge, Sample
-from evaluation.yards.outcomes import CROSSINGS, YARDS
-from evaluation.yards.rig import SLOW
+from evaluation import yard_drive as driving
+from evaluation.yard_drive import SLOW
+from evaluation.yard_judge import (
+    CROSSINGS,
+    OBSTACLE,
+    PERSON,
+    WALKED_INTO_ROBOT,
+    YARDS,
+    Judge,
+    Sample,
+)
 from run_session.failure import RunError
 from run_session.launch import Launched
 from run_session.processes import Family
@@ -42,7 +49,7 @@ def test_a_contact_ends_what_counts():
     assert judge.time == pytest.approx(3.2)  # 0.827 m until the camera touches
 
 
-@pytest.mark.parametrize(("speed", "said"), [(0.1, PERSON), (0.0, WALKED_INTO)])
+@pytest.mark.parametrize(("speed", "said"), [(0.1, PERSON), (0.0, WALKED_INTO_ROBOT)])
 def test_who_touched_whom(speed, said):
     judge = Judge(NOBODY, 0.0)
     judge.see(at(0.0, 0.0, speed, (0.5, 0.0, 0.0)))

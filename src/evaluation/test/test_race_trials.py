@@ -13,15 +13,15 @@ import cv2
 import numpy as np
 import pytest
 
-from evaluation.laps.disturbance import RACE, Disturbance, draw
-from evaluation.race_trials.outcomes import (
+from evaluation.command_line import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
+from evaluation.lap import RACE, Disturbance, draw
+from evaluation.race_trials import (
     Lap,
+    RaceTrial,
     summarize,
+    write_path_sheet,
 )
-from evaluation.race_trials.pictures import write_path_sheet
-from evaluation.race_trials.trial import RaceTrial
-from evaluation.trial.program import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
-from evaluation.trial.runner import run_trial
+from evaluation.trial import run_trial
 from run_session.failure import RunError
 
 pytestmark = pytest.mark.processes
@@ -101,7 +101,7 @@ def test_the_table_of_a_follower_that_closed_nothing():
 
 @pytest.mark.parametrize("closed", [0, 1, 7])
 def test_pictures_are_drawn_of_what_there_is(tmp_path, closed):
-    chart = importlib.import_module("evaluation.race_trials.pictures")
+    chart = importlib.import_module("evaluation.race_trials")
     stalled = lap(9, outcome="stalled", time=None, set="random tracks")
     laps = [lap(seed, folder=".") for seed in range(closed)] + [stalled]
     cv2.imwrite(str(tmp_path / "path.png"), np.full((400, 500, 3), 255, np.uint8))

@@ -12,12 +12,11 @@ import pytest
 import rospkg
 from racecar_description.track.closed_line import load_track
 
-from evaluation.course_run.main import CourseRun
-from evaluation.laps.disturbance import RACE, Disturbance, draw
-from evaluation.race_trials import trial as trial_module
-from evaluation.race_trials.outcomes import Lap
-from evaluation.race_trials.trial import racetrack, random_track
-from evaluation.trial.protocol import try_case
+from evaluation import race_trials as trial_module
+from evaluation.course_run import CourseRun
+from evaluation.lap import RACE, Disturbance, draw
+from evaluation.race_trials import Lap, racetrack, random_track
+from evaluation.trial import try_case
 from run_session.failure import RunError
 from run_session.session import Session
 

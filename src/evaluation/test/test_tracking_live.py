@@ -8,9 +8,9 @@ from pathlib import Path
 import cv2
 import pytest
 
-from evaluation.tracking.run import TrackRun
-from evaluation.trial.live import run_program_of
-from evaluation.trial.program import NOT_RUN
+from evaluation.command_line import NOT_RUN
+from evaluation.live import run_program_of
+from evaluation.track import TrackRun
 
 pytestmark = pytest.mark.processes
 SCRIPT = Path(__file__).parent.parent / "scripts" / "track.py"

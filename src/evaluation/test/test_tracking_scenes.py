@@ -29,7 +29,7 @@ from kinematic_tracker import follow
 from bullet_sim.actors import pose_at
 from bullet_sim.formats.loading import load_world
 from bullet_sim.formats.resources import Resources
-from evaluation.tracking.score import FIND_TIME, Task, TrackScorer
+from evaluation.track_score import FIND_TIME, Task, TrackScorer
 
 LESSON = Path(rospkg.RosPack().get_path("ai_robot_tracking"))
 CONFIG = LESSON / "config" / "tracking_params.yaml"

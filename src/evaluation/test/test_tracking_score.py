@@ -9,10 +9,10 @@ from ai_robot_tracking.scenes.scene import KINDS
 from ai_robot_tracking.scenes.world_file import RADIUS
 
 from evaluation.lap import Sample
-from evaluation.tracking.run import TrackRun
-from evaluation.tracking.score import CAMERA_X, PARTS, Task, TrackScorer
-from evaluation.tracking.trial import SETS, Drive, TrackTrial, summarize
-from evaluation.trial.runner import run_trial
+from evaluation.track import TrackRun
+from evaluation.track_score import CAMERA_X, PARTS, Task, TrackScorer
+from evaluation.track_trials import SETS, DriveResult, TrackTrial, summarize
+from evaluation.trial import run_trial
 from run_session.failure import RunError
 
 STANDS = np.array([(0.0, 5.0, 0.0)])
@@ -128,7 +128,7 @@ def report(seed, good, hidden=()):
 
 
 def summary(name, reports):
-    (found,) = summarize([Drive(f"{name}/{each['seed']}", name, each) for each in reports])
+    (found,) = summarize([DriveResult(f"{name}/{each['seed']}", name, each) for each in reports])
     assert found["set"] in SETS
     return found
 
@@ -143,7 +143,7 @@ def test_summaries():
     assert not summary("hidden", [*hidden[1:], report(8, False, (3.0, None)),
                                   report(9, False, (11.0, None))])["passed"]
     drives = [*hidden, report(9, False, (11.0, 12.0))]
-    assert "18 of 20" in TrackTrial().table([Drive(str(n), "hidden", each)
+    assert "18 of 20" in TrackTrial().table([DriveResult(str(n), "hidden", each)
                                              for n, each in enumerate(drives)])
 
 

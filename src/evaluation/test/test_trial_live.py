@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from evaluation.trial import live
-from evaluation.trial.program import run_program
+from evaluation import live
+from evaluation.command_line import run_program
 
 
 class Drive(live.LiveDrive):

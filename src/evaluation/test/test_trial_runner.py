@@ -6,10 +6,9 @@ from dataclasses import asdict, dataclass
 
 import pytest
 
-from evaluation.trial.program import NOT_PASSED, NOT_RUN, PASSED
-from evaluation.trial.protocol import Case, ReportedTrial, from_json
-from evaluation.trial.report import cell, table
-from evaluation.trial.runner import run_trial
+from evaluation.command_line import NOT_PASSED, NOT_RUN, PASSED
+from evaluation.report import cell, table
+from evaluation.trial import Case, ReportedTrial, from_json, run_trial
 from run_session.failure import RunError
 
 
@@ -147,11 +146,11 @@ def test_the_columns_of_a_table():
 
 
 def test_cases_can_be_sent_to_another_process():
-    from evaluation.lane.trial import LaneTrial
-    from evaluation.localisation.trial import LocalisationTrial
-    from evaluation.race_trials.trial import RaceTrial
-    from evaluation.tracking.trial import TrackTrial
-    from evaluation.yards.trial import YardTrial
+    from evaluation.lane_trials import LaneTrial
+    from evaluation.localisation_trials import LocalisationTrial
+    from evaluation.navigation_trials import YardTrial
+    from evaluation.race_trials import RaceTrial
+    from evaluation.track_trials import TrackTrial
 
     for trial in (LaneTrial(), LocalisationTrial(), RaceTrial(), TrackTrial(), YardTrial()):
         cases = trial.cases(trial.parse([]))

@@ -22,8 +22,8 @@ sys.path.insert(0, str(HERE))
 
 from sleep_trial import SleepTrial  # noqa: E402
 
-from evaluation.trial.program import INTERRUPTED, NOT_RUN, PASSED  # noqa: E402
-from evaluation.trial.runner import run_trial  # noqa: E402
+from evaluation.command_line import INTERRUPTED, NOT_RUN, PASSED  # noqa: E402
+from evaluation.trial import run_trial  # noqa: E402
 
 pytestmark = pytest.mark.processes
 LIMIT = 60.0  # s, wall, for what takes 2 s on a quiet machine
@@ -42,7 +42,7 @@ def run(out, *words):
 
 def start(out, *words):
     """The trial as a program."""
-    text = ("import sys; from sleep_trial import SleepTrial; from evaluation.trial.runner import"
+    text = ("import sys; from sleep_trial import SleepTrial; from evaluation.trial import"
             " run_trial; sys.exit(run_trial(SleepTrial(), sys.argv[1:]))")
     return subprocess.Popen(
         [sys.executable, "-c", text, "--out", str(out), *map(str, words)],
@@ -154,7 +154,7 @@ def test_a_killed_program_takes_its_cases_with_it(tmp_path):
     (["--scheduler", "tcp://127.0.0.1"], "such as tcp://192.168.0.10:8786; got 'tcp://127.0.0.1'"),
 ])
 def test_a_mistake_is_one_line(tmp_path, capfd, monkeypatch, words, said):
-    from evaluation.trial import workers
+    from evaluation import workers
 
     monkeypatch.setattr(workers, "CONNECT_TIME", 0.5)
     assert run(tmp_path, *words) == NOT_RUN
@@ -169,7 +169,7 @@ def test_dask_adds_nothing_to_the_line_when_the_program_ends(tmp_path):
 
 
 def test_without_dask_one_line_says_what_to_type(tmp_path, capsys, monkeypatch):
-    monkeypatch.setitem(sys.modules, "evaluation.trial.workers", None)
+    monkeypatch.setitem(sys.modules, "evaluation.workers", None)
     assert run(tmp_path, "--workers", "2") == NOT_RUN
     assert "scripts/setup.sh --workers" in capsys.readouterr().err
 

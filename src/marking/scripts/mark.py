@@ -5,7 +5,7 @@ import sys
 
 from marking.trial import MarkingTrial
 
-from evaluation.trial.runner import run_trial
+from evaluation.trial import run_trial
 
 if __name__ == "__main__":
     sys.exit(run_trial(MarkingTrial(), sys.argv[1:]))

@@ -12,9 +12,9 @@ from pathlib import Path
 import made_up
 import psutil
 import pytest
-from marking.box import Box
+from marking.bubblewrap import Kind, available, namespace
 from marking.rules import load_rules
-from marking.sandbox import Kind, available, namespace
+from marking.submission_process import SubmissionProcess
 
 from run_session.failure import RunError
 
@@ -38,12 +38,12 @@ def boxed(kind, tmp_path):
     """Starts a program in a sandbox; afterwards nothing of it runs."""
     boxes = []
 
-    def start(program: str) -> Box:
+    def start(program: str) -> SubmissionProcess:
         folder = tmp_path / "submission"
         folder.mkdir()
         (folder / "main.py").write_text(program, encoding="utf-8")
         tmp_path.chmod(0o755)
-        boxes.append(Box(kind, folder, Path("main.py"), LIMITS,
+        boxes.append(SubmissionProcess(kind, folder, Path("main.py"), LIMITS,
                          {"PATH": os.environ["PATH"]}, tmp_path / "output.txt"))
         return boxes[-1]
 
@@ -70,7 +70,7 @@ def test_a_refusal_says_what_would_allow_it(monkeypatch, user, advice):
         available()
 
 
-def fault_of(box: Box) -> str:
+def fault_of(box: SubmissionProcess) -> str:
     until = time.monotonic() + LIMIT
     while not (fault := box.fault()):
         assert time.monotonic() < until, "it still runs"

@@ -1,9 +1,9 @@
 """What the master logged and the nodes refused, and what of it the rules do not allow."""
 
 import pytest
-from marking.conduct import Conduct, Course
+from marking.conduct import Conduct, CourseNodes
 
-COURSE = Course(
+COURSE = CourseNodes(
     nodes=frozenset({"/gazebo", "/rosout"}), topics=frozenset({"/odom", "/cmd_vel", "/rosout"}),
     services=frozenset({"/gazebo/pause_physics"}), parameters=frozenset({"/use_sim_time"}),
     may_publish=frozenset({"/cmd_vel", "/rosout"}))

@@ -1,6 +1,6 @@
 """From a drive to points, with the reason for each loss."""
 
-from marking.points import mean, points_of
+from marking.marks import mean, points_of
 from marking.rules import Points
 
 POINTS = Points(60, 25, 0.03, 0.15, 15, 0.2, 0.05)

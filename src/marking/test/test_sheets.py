@@ -3,12 +3,11 @@
 import csv
 
 from made_up import RULES
+from marking.bubblewrap import Kind
 from marking.case_files import OUTPUT, PATH_PICTURE
-from marking.mark import Mark, by_student
+from marking.marks import Mark, by_student, write_marks, write_student_pages
 from marking.rules import load_rules
-from marking.sandbox import Kind
-from marking.sheets import write_marks, write_student_pages
-from marking.text import file_name, one_line
+from marking.submissions import file_name, one_line
 
 EVIL = "<script>alert(1)</script>"
 

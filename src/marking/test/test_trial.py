@@ -6,14 +6,14 @@ import shutil
 
 import made_up
 import pytest
+from marking.bubblewrap import Kind
 from marking.case_files import read_case
-from marking.drive_report import BY_TIME
-from marking.sandbox import Kind
+from marking.case_runner import BY_TIME
 from marking.trial import TIMED, MarkingTrial
 
 from marking import trial as trial_module
 from run_session.failure import RunError
-from run_session.resources import find_package
+from run_session.files import find_package
 
 CLOSED = {"outcome": "closed", "violations": [], "fault": "", "why": "", "laps_wanted": 1,
           "laps_closed": 1, "driven_share": 1.0, "rms_lateral_m": 0.03, "mean_speed_m_s": 0.2}

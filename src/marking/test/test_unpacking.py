@@ -6,8 +6,7 @@ from hashlib import sha256
 
 import made_up
 import pytest
-from marking.submissions import digest, find_submissions, prepare
-from marking.unpacking import MOST_BYTES, UnpackError, unpack
+from marking.submissions import MOST_BYTES, UnpackError, digest, find_submissions, prepare, unpack
 
 PATTERNS = ("follower.py", "*follow*.py", "main.py")
 REFUSED = [name for name, (_, row, *_) in made_up.ARCHIVES.items() if row]

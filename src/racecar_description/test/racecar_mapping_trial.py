@@ -24,7 +24,7 @@ from trial_venue import LASER, LASER_ANGLES, LASER_REACH, VENUES, Truth, prepare
 from map_server.map_files import read_map
 from nav_algorithms.map_agreement import map_agreement
 from nav_algorithms.poses import compose
-from trial_worlds.true_map import visible_walls
+from trial_worlds.house import visible_walls
 
 LAP, NEAR_START = 30.0, 0.3  # m: so far at least, and then so near to where it began
 LAP_LIMIT, SAVE_LIMIT = 400.0, 60.0  # s, wall

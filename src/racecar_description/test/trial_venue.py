@@ -12,7 +12,7 @@ import numpy as np
 from nav_algorithms import likelihood_field
 from nav_algorithms.grid import OCCUPIED
 from nav_algorithms.poses import compose
-from trial_worlds.true_map import open_walls, true_map
+from trial_worlds.house import open_walls, true_map
 
 PACKAGE = Path(__file__).resolve().parent.parent
 VENUES = ("walled", "field")

@@ -10,7 +10,7 @@ from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
-from run_session.connections import _links_of
+from run_session.master import _links_of
 
 
 @pytest.mark.parametrize(("answer", "links"), [

@@ -5,7 +5,7 @@ from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
-from run_session.master_choice import free_port, is_up
+from run_session.master import free_port, is_up
 
 
 @pytest.fixture

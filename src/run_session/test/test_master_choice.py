@@ -7,8 +7,8 @@ from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
-from run_session import master_choice
-from run_session.master_choice import (
+from run_session import master
+from run_session.master import (
     CALLERS,
     USUAL,
     free_port,
@@ -80,11 +80,11 @@ def test_another_users_process_is_not_ours(monkeypatch):
 @pytest.mark.parametrize(("listens", "up", "joined"), [
     (True, True, True), (True, False, False), (False, True, False)])
 def test_only_a_master_of_ones_own_is_joined(monkeypatch, listens, up, joined):
-    monkeypatch.setattr(master_choice, "listens_here", lambda _port: listens)
-    monkeypatch.setattr(master_choice, "is_up", lambda _uri: up)
-    monkeypatch.setattr(master_choice, "free_port", lambda: 40123)
+    monkeypatch.setattr(master, "listens_here", lambda _port: listens)
+    monkeypatch.setattr(master, "is_up", lambda _uri: up)
+    monkeypatch.setattr(master, "free_port", lambda: 40123)
     expected = USUAL if joined else "http://localhost:40123"
-    assert master_choice.master_to_join() == expected
+    assert master.master_to_join() == expected
 
 
 def test_another_programs_answer_is_no_masters():

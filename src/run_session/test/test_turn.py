@@ -3,7 +3,7 @@
 import pytest
 
 from run_session.failure import RunError
-from run_session.turn import take_turn
+from run_session.master import take_turn
 
 
 def test_a_turn_is_waited_for_no_longer_than_the_limit(tmp_path):

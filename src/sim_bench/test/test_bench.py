@@ -24,8 +24,8 @@ from sim_bench.results import (
 from sim_bench.ros_run import read_lines
 from sim_bench.stages import stage_figures, stages
 
-from evaluation.trial.program import NOT_RUN
-from run_session import cpu
+from evaluation.command_line import NOT_RUN
+from run_session import processes
 from run_session.failure import RunError
 from sim_bench import main
 
@@ -266,7 +266,7 @@ def test_a_chart_is_drawn_of_what_there_is(tmp_path, names):
     ],
 )
 def test_processes_have_the_names_that_ros_gave_them(line, name):
-    assert cpu.process_name(line, "its parent") == name
+    assert processes.process_name(line, "its parent") == name
 
 
 def test_a_child_is_found_with_its_memory():
@@ -274,7 +274,7 @@ def test_a_child_is_found_with_its_memory():
         name = Path(f"/proc/{child.pid}/comm")
         while name.read_text() != "sleep\n":  # until then it is a copy of this process
             time.sleep(0.01)
-        (found,) = [process for process in cpu.processes() if process.pid == child.pid]
+        (found,) = [process for process in processes.processes() if process.pid == child.pid]
         child.kill()
     assert found.memory > 0
 

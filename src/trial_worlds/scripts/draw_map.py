@@ -14,7 +14,7 @@ from pathlib import Path
 
 from bullet_sim.errors import SimulationError
 from map_server.map_files import write_map
-from trial_worlds.true_map import open_walls, true_map
+from trial_worlds.house import open_walls, true_map
 
 
 def main() -> int:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN
-from trial_worlds.true_map import open_walls, true_map, visible_walls
+from trial_worlds.house import open_walls, true_map, visible_walls
 
 BOX = """<model name="{name}"><static>true</static><pose>{pose}</pose><link name="l">
 <collision name="c"><geometry><box><size>{size}</size></box></geometry></collision></link>

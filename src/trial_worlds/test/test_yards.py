@@ -14,8 +14,7 @@ from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
-from trial_worlds import field, models, yard
-from trial_worlds.clearance import clearance
+from trial_worlds import crossing, yard
 from trial_worlds.crossing import (
     AHEAD,
     APPROACH,
@@ -23,10 +22,11 @@ from trial_worlds.crossing import (
     ROBOT_FRONT,
     ROBOT_SPEED,
     ROOM,
+    clearance,
     draw_crossing,
 )
-from trial_worlds.difficulty import difficulty
-from trial_worlds.true_map import open_walls
+from trial_worlds.house import open_walls
+from trial_worlds.yard import difficulty
 
 
 def cells(*rows: str) -> np.ndarray:
@@ -37,8 +37,8 @@ def cells(*rows: str) -> np.ndarray:
 
 
 def test_neighbours_beyond_the_walls_count_and_those_beyond_the_ends_do_not():
-    assert field.neighbours(cells("...", "...", "...")).tolist() == [[3] * 3, [0] * 3, [3] * 3]
-    assert field.neighbours(cells(".#.", "...", "...", "...")).tolist()[1] == [1, 1, 1]
+    assert yard.neighbours(cells("...", "...", "...")).tolist() == [[3] * 3, [0] * 3, [3] * 3]
+    assert yard.neighbours(cells(".#.", "...", "...", "...")).tolist()[1] == [1, 1, 1]
 
 
 def test_crowds_fill_and_loners_go():
@@ -49,19 +49,19 @@ def test_crowds_fill_and_loners_go():
         def random(self, shape):
             return np.where(alone, 0.0, 1.0)
 
-    grown = field.grow(Fixed(), 7, 7, 0.5, 1)
+    grown = yard.grow(Fixed(), 7, 7, 0.5, 1)
     assert grown[[0, -1]].all() and not grown[1:-1].any()
 
 
 def test_the_robot_s_middle_keeps_its_reach_from_every_cylinder():
-    closed = field.blocked(cells(".......", ".......", "...#...", ".......", "......."), 1)
+    closed = yard.blocked(cells(".......", ".......", "...#...", ".......", "......."), 1)
     assert np.array_equal(closed, cells(".......", "..###..", "..###..", "..###..", "......."))
 
 
 def test_the_shortest_way_goes_round_and_never_through_a_corner():
-    path = field.shortest_path(cells("...", "##.", "..."), (0, 0), (2, 0))
+    path = yard.shortest_path(cells("...", "##.", "..."), (0, 0), (2, 0))
     assert path.tolist() == [[0, 0], [0, 1], [1, 2], [2, 1], [2, 0]]
-    assert field.shortest_path(cells("..#", ".#.", "#.."), (0, 0), (2, 2)) is None
+    assert yard.shortest_path(cells("..#", ".#.", "#.."), (0, 0), (2, 2)) is None
 
 
 # --- difficulty
@@ -126,7 +126,7 @@ def test_the_world_file_has_its_cylinders_where_they_stand(tmp_path):
     found = yard.draw_yard(3)
     path = tmp_path / "worlds" / "yard_3.world"
     path.parent.mkdir()
-    path.write_text(models.world(models.yard_model(found)))
+    path.write_text(crossing.world(crossing.yard_model(found)))
     x, y = yard.places(found.path)[len(found.path) // 2]
     angles = np.arange(0, 2 * np.pi, 0.1)
     ways = np.stack((np.cos(angles), np.sin(angles)), axis=1)

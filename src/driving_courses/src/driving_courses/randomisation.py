@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from driving_courses.errors import CourseError
-from evaluation.laps.disturbance import RACE, Disturbance
+from evaluation.lap import RACE, Disturbance
 
 Range = tuple[float, float]
 FACTORS = ("light", "friction", "camera_noise")  # that are never negative
@@ -41,7 +41,7 @@ class Randomisation:
         return cls(**found)
 
 
-# As the race's trials disturb a lap (evaluation.laps.disturbance).
+# As the race's trials disturb a lap (evaluation.lap).
 TRIALS = Randomisation(
     light=RACE.light, camera_noise=RACE.camera_noise, sideways=(-RACE.sideways, RACE.sideways),
     along=(-RACE.along, RACE.along), turn=(-RACE.turn, RACE.turn))

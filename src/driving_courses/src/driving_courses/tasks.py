@@ -20,9 +20,9 @@ from driving_courses.packages import find_file
 from driving_courses.randomisation import Episode
 from driving_courses.resources import resources
 from driving_courses.venues import Venues
+from evaluation import track_score
 from evaluation.lap import LapScorer, Sample, Verdict
-from evaluation.tracking import score
-from evaluation.tracking.score import TrackScorer
+from evaluation.track_score import TrackScorer
 
 FAILED = -1.0  # reward for leaving the course, stalling or driving the wrong way
 
@@ -93,7 +93,7 @@ class FollowTask:
         """See Task."""
         seed = episode.track or 0
         scene = draw_scene(self._course.course, seed)
-        self._drive = TrackScorer(score.Task(scene.way, scene.hidden, self._wanted))
+        self._drive = TrackScorer(track_score.Task(scene.way, scene.hidden, self._wanted))
         self._time = 0.0
         with TemporaryDirectory(prefix="driving_courses-") as folder:
             path = Path(folder) / "scene.world"
@@ -110,7 +110,7 @@ class FollowTask:
         drive.add(sample)
         elapsed, self._time = drive.elapsed - self._time, drive.elapsed
         lost = drive.left_at is not None
-        reward = elapsed * max(-1.0, 1 - abs(drive.errors[-1]) / score.BAND)
+        reward = elapsed * max(-1.0, 1 - abs(drive.errors[-1]) / track_score.BAND)
         return reward + FAILED * (lost or (drive.over and not drive.good)), lost or drive.over
 
     def report(self) -> dict[str, Any]:

@@ -1,9 +1,10 @@
-"""Pictures by matplotlib, which is loaded only when one is drawn, so that no drive waits for it."""
+"""Colours, top views in pixels, and pictures by matplotlib, which is loaded only to draw one."""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator, Sequence
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,15 +13,128 @@ import numpy as np
 from racecar_description.track.closed_line import build_track
 from racecar_description.track.track_file import TrackFile
 
-from evaluation import colours
-from evaluation.colours import LAPS, PAPER, TEXT, lap_colour
 from evaluation.lap import LapScorer
-from evaluation.plan import arrow, start_mark
 from run_session.files import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+PAPER, FLOOR, GRID, TEXT, FAINT = "#181a1e", "#0e0e10", "#24272c", "#e4e8eb", "#989ea5"
+LINE, WHITE = "#f5d728", "#e1e1e1"  # the course's line that the car follows, and its other line
+LAPS = ("#46aaf0", "#fa6e6e", "#5ad282", "#d278dc", "#fabe5a", "#50c8c8")
+CAR, GOOD, BAD, HIDDEN = "#f03c3c", "#5ad282", "#faaa3c", "#6e8296"
+
+
+def lap_colour(number: int) -> str:
+    """The colour of a lap, counted from 0."""
+    return LAPS[number % len(LAPS)]
+
+
+def bgr(colour: str) -> tuple[int, int, int]:
+    """Blue, green, red from 0 to 255, as OpenCV has them."""
+    return tuple(bytes.fromhex(colour[1:])[::-1])
+
+
+FONT = cv2.FONT_HERSHEY_DUPLEX
+SHIFT = 4  # cv2 draws between pixels when coordinates are given in sixteenths
+HEAD = np.array([(0.6, 0.0), (-0.4, 0.375), (-0.2, 0.0), (-0.4, -0.375)])  # of an arrow of length 1
+
+
+class Plan:
+    """A view of the area between two corners (x, y), m, scaled to a width; y points up."""
+
+    def __init__(self, low: Sequence[float], high: Sequence[float], width_px: int):
+        self._low, self._high = np.asarray(low, float), np.asarray(high, float)
+        self.px_per_m = width_px / (self._high[0] - self._low[0])
+        height_px = round((self._high[1] - self._low[1]) * self.px_per_m)
+        self.image = np.full((height_px, width_px, 3), bgr(FLOOR), np.uint8)
+
+    def copy(self) -> Plan:
+        """A copy that can be drawn on further."""
+        other = Plan(self._low, self._high, self.image.shape[1])
+        other.image = self.image.copy()
+        return other
+
+    def to_px(self, points: Iterable[Sequence[float]]) -> np.ndarray:
+        """World points (n, 2) as pixel coordinates (n, 2), float."""
+        points = np.asarray(points, float).reshape(-1, 2)
+        return (points - (self._low[0], self._high[1])) * (self.px_per_m, -self.px_per_m)
+
+    def grid(self, step: float) -> None:
+        """Draw grid lines `step` metres apart."""
+        for axis in (0, 1):
+            first, last = math.ceil(self._low[axis] / step), math.floor(self._high[axis] / step)
+            for number in range(first, last + 1):
+                ends = np.array((self._low, self._high))
+                ends[:, axis] = number * step
+                self.line(ends, GRID)
+
+    def line(self, points: Iterable[Sequence[float]], colour: str, thick_px: int = 1,
+             closed: bool = False) -> None:
+        """Draw a line through points (n, 2) of the world, m, anti-aliased."""
+        pixels = _fixed(self.to_px(points))
+        if len(pixels) > 1:
+            cv2.polylines(self.image, [pixels], closed, bgr(colour), thick_px, cv2.LINE_AA, SHIFT)
+
+    def disc(self, place: Sequence[float], radius: float, colour: str) -> None:
+        """Draw a disc; place and radius in m."""
+        centre = _fixed(self.to_px([place]))[0].tolist()
+        cv2.circle(self.image, centre, round(radius * self.px_per_m * (1 << SHIFT)), bgr(colour),
+                   -1, cv2.LINE_AA, SHIFT)
+
+    def dots(self, points: np.ndarray, colour: str) -> None:
+        """Draw dots, 3 px wide, at points (n, 2), m."""
+        for x, y in np.round(self.to_px(points)).astype(int).tolist():
+            cv2.rectangle(self.image, (x - 1, y - 1), (x + 1, y + 1), bgr(colour), -1)
+
+    def arrow(self, pose: Sequence[float], length: float, colour: str) -> None:
+        """Draw an arrow head (length in m) with its reference point at x, y, yaw."""
+        corners = _fixed(self.to_px(arrow(pose, length)))
+        cv2.fillPoly(self.image, [corners], bgr(colour), cv2.LINE_AA, SHIFT)
+        cv2.polylines(self.image, [corners], True, (255, 255, 255), 1, cv2.LINE_AA, SHIFT)
+
+
+def course_plan(track_file: TrackFile, width_px: int, margin: float = 0.15) -> Plan:
+    """A view of the floor with a 0.5 m grid, the two lines and the start."""
+    yellow = build_track(track_file)
+    white = yellow.offset(-track_file.lane_width)
+    points = np.array(yellow.points() + white.points())
+    plan = Plan(points.min(axis=0) - margin, points.max(axis=0) + margin, width_px)
+    plan.grid(0.5)
+    for line, colour in ((white, WHITE), (yellow, LINE)):
+        plan.line(line.points(), colour, max(2, round(track_file.line_width * plan.px_per_m)),
+                  closed=True)
+    plan.line(start_mark(yellow.pose(0.0)), TEXT, 2)
+    return plan
+
+
+def start_mark(pose: Sequence[float]) -> np.ndarray:
+    """Ends (2, 2) of a short line across the track's start."""
+    x, y, heading = pose
+    across = 0.07 * np.array((math.sin(heading), -math.cos(heading)))
+    return np.array((x, y)) + np.array((-across, across))
+
+
+def arrow(pose: Sequence[float], length: float) -> np.ndarray:
+    """Corners (4, 2) of an arrow head with its reference point at x, y, yaw; m, rad."""
+    x, y, yaw = pose
+    turn = np.array([(math.cos(yaw), math.sin(yaw)), (-math.sin(yaw), math.cos(yaw))])
+    return length * HEAD @ turn + (x, y)
+
+
+def write_text(image: np.ndarray, text: str, at_px: tuple[int, int], height_px: int,
+               colour: tuple = bgr(TEXT)) -> int:
+    """Draw text with its baseline's left end at a pixel; returns its width in px."""
+    thick = 2 if height_px > 24 else 1
+    scale = cv2.getFontScaleFromHeight(FONT, height_px, thick)
+    cv2.putText(image, text, at_px, FONT, scale, colour, thick, cv2.LINE_AA)
+    return cv2.getTextSize(text, FONT, scale, thick)[0][0]
+
+
+def _fixed(points_px: np.ndarray) -> np.ndarray:
+    return np.round(np.asarray(points_px) * (1 << SHIFT)).astype(np.int32)
+
 
 DPI, WIDTH, SIDE, HEADER, FOOT = 100, 14.0, 0.5, 1.25, 0.45  # px an inch; inches
 PANEL_DPI, PANEL = 110, (6.5, 3.4)  # of charts: px an inch; inches
@@ -40,7 +154,7 @@ def map_sheet(title: str, subtitle: str, low: Sequence[float], high: Sequence[fl
     height = HEADER + map_height + FOOT + more
     figure = Figure(figsize=(WIDTH, height), dpi=DPI, facecolor=PAPER)
     figure.text(SIDE / WIDTH, 1 - 0.62 / height, title, color=TEXT, size=22)
-    figure.text(SIDE / WIDTH, 1 - 1.02 / height, subtitle, color=colours.FAINT, size=11)
+    figure.text(SIDE / WIDTH, 1 - 1.02 / height, subtitle, color=FAINT, size=11)
     axes = figure.add_axes((SIDE / WIDTH, (FOOT + more) / height, map_width / WIDTH,
                             map_height / height))
     axes.set(xlim=(left, right), ylim=(bottom, top), xlabel="m")
@@ -59,7 +173,7 @@ def below(figure: Figure, more: float) -> Axes:
 
 def legend(axes: Axes) -> None:
     """Add a legend where it covers least."""
-    axes.legend(facecolor=PAPER, edgecolor=colours.GRID, labelcolor=TEXT, fontsize=9)
+    axes.legend(facecolor=PAPER, edgecolor=GRID, labelcolor=TEXT, fontsize=9)
 
 
 def draw_arrow(axes: Axes, pose: Sequence[float], length: float, colour: str) -> None:
@@ -90,7 +204,7 @@ def path_picture(track_file: TrackFile, drive: LapScorer, title: str, subtitle: 
     figure, axes = map_sheet(title, subtitle, everything.min(0) - 0.15, everything.max(0) + 0.15)
     points_a_metre = 72 * (WIDTH - 2 * SIDE) / (np.ptp(everything[:, 0]) + 0.3)
     texts = ("yellow: what the car follows", "white: right edge of the lane")
-    for points, colour, text in zip(lines, (colours.LINE, colours.WHITE), texts, strict=True):
+    for points, colour, text in zip(lines, (LINE, WHITE), texts, strict=True):
         axes.plot(*points.T, color=colour, label=text,
                   linewidth=max(1.5, track_file.line_width * points_a_metre))
     axes.plot(*start_mark(yellow.pose(0.0)).T, color=TEXT, linewidth=2)
@@ -111,10 +225,10 @@ def _draw_laps(axes: Axes, drive: LapScorer) -> None:
         axes.plot(*points[max(chosen[0] - 1, 0):chosen[-1] + 1].T, color=lap_colour(number),
                   label=text, linewidth=2 * (1 + 0.6 * min(numbers[-1] - number, 4)))
     if numbers[-1] >= len(LAPS):
-        axes.plot([], [], color=colours.FAINT,
+        axes.plot([], [], color=FAINT,
                   label=f"laps {len(LAPS) + 1} to {numbers[-1] + 1}: the same colours again")
     last = drive.samples[-1]
-    draw_arrow(axes, (last.x, last.y, last.yaw), 0.2, colours.CAR)
+    draw_arrow(axes, (last.x, last.y, last.yaw), 0.2, CAR)
 
 
 def _lap_figures(drive: LapScorer, number: int) -> str:
@@ -136,10 +250,10 @@ def write_tiles(path: Path, tiles: Sequence[Any], draw: Callable[[Axes, Any], tu
     figure = Figure(figsize=(size[0] * columns, size[1] * rows), dpi=DPI, facecolor=PAPER,
                     layout="constrained")
     for number, tile in enumerate(tiles, start=1):
-        axes = figure.add_subplot(rows, columns, number, facecolor=colours.FLOOR)
+        axes = figure.add_subplot(rows, columns, number, facecolor=FLOOR)
         axes.set(xticks=(), yticks=(), aspect="equal")
         caption, good = draw(axes, tile)
-        axes.set_title(caption, fontsize=7, color=TEXT if good else colours.CAR)
+        axes.set_title(caption, fontsize=7, color=TEXT if good else CAR)
     write_png(path, pixels(figure))
 
 
@@ -159,11 +273,11 @@ def chart(path: Path, rows: int, columns: int, **settings: object) -> Iterator[n
 
 
 def _finish(axes: Axes) -> None:
-    axes.set_facecolor(colours.FLOOR)
-    axes.grid(color=colours.GRID)
-    axes.tick_params(colors=colours.FAINT, labelsize=8, length=0)
-    axes.xaxis.label.set_color(colours.FAINT)
-    axes.yaxis.label.set_color(colours.FAINT)
+    axes.set_facecolor(FLOOR)
+    axes.grid(color=GRID)
+    axes.tick_params(colors=FAINT, labelsize=8, length=0)
+    axes.xaxis.label.set_color(FAINT)
+    axes.yaxis.label.set_color(FAINT)
     axes.set_axisbelow(True)
     for spine in axes.spines.values():
         spine.set_visible(False)

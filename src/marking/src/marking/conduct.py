@@ -24,7 +24,7 @@ LONGEST, MOST = 300, 20  # characters of a violation, violations that are named
 
 
 @dataclass(frozen=True)
-class Course:
+class CourseNodes:
     """The ROS graph before the submission started, and the parts that it may use."""
 
     nodes: frozenset[str]
@@ -37,7 +37,7 @@ class Course:
 class Conduct:
     """Reads log and record as they grow, and collects violations."""
 
-    def __init__(self, course: Course):
+    def __init__(self, course: CourseNodes):
         self._course = course
         self._publishers: set[tuple[str, str]] = set()  # topic and address, once registered
         self._found: set[str] = set()
@@ -73,7 +73,8 @@ class Conduct:
                 self._found |= set(_of_registration(sign, kind, name, node, self._course))
 
 
-def _of_registration(sign: str, kind: str, name: str, node: str, course: Course) -> Iterator[str]:
+def _of_registration(sign: str, kind: str, name: str, node: str, course: CourseNodes
+                     ) -> Iterator[str]:
     if kind == "PARAM":
         if _belongs_to_course(name, course):
             yield f"it {'changed' if sign == '+' else 'deleted'} the parameter {name}"
@@ -86,7 +87,7 @@ def _of_registration(sign: str, kind: str, name: str, node: str, course: Course)
         yield f"it published {name}"
 
 
-def _belongs_to_course(parameter: str, course: Course) -> bool:
+def _belongs_to_course(parameter: str, course: CourseNodes) -> bool:
     above = parameter.rstrip("/") + "/"
     return parameter in course.parameters or any(
         each.startswith(above) for each in course.parameters) or any(

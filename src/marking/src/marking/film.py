@@ -9,11 +9,10 @@ from pathlib import Path
 import rospy
 from racecar_description.track.track_file import load_track_file
 
-from evaluation.course_run.film import CourseFilm
-from evaluation.session.film import FILM_PERIOD
-from marking.case_files import FILM, read_case
-from marking.states import STATE_LOG, sample_of
-from run_session.tail import Tail
+from evaluation.course_run import CourseFilm
+from evaluation.film import FILM_PERIOD
+from marking.case_files import FILM, STATE_LOG, read_case, sample_of
+from run_session.files import Tail
 
 NODE = "/film"
 LOOK_PERIOD = 0.1  # s, wall

@@ -19,8 +19,7 @@ from pathlib import Path
 import rosgraph
 
 from run_session.failure import RunError
-from run_session.files import write_whole
-from run_session.resources import find_package
+from run_session.files import find_package, write_whole
 
 FOLDER = "MARKING_GUARD"  # environment variable: the folder of the two files
 RECORD, SEAL = "guard.jsonl", "guard.json"

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, get_type_hints
 
 from run_session.failure import RunError
-from run_session.resources import read_keys
+from run_session.files import read_keys
 
 
 @dataclass(frozen=True)

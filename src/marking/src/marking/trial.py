@@ -15,24 +15,28 @@ from pathlib import Path
 
 from racecar_description.track.closed_line import load_track
 
-from evaluation.laps.lap_trial import MODEL_PATH
-from evaluation.trial.command_line import Parser
-from evaluation.trial.protocol import REPORT, Case, ReportedTrial
-from marking.case_files import CaseFile
-from marking.course_up import STARTUP_LIMIT
-from marking.drive_report import BY_TIME
-from marking.mark import Mark, by_student
-from marking.points import mean, points_of
+from evaluation.command_line import Parser
+from evaluation.lap_trial import MODEL_PATH
+from evaluation.trial import REPORT, Case, ReportedTrial
+from marking.bubblewrap import Kind, available, hidden, namespace, shown
+from marking.case_files import COURSES, CaseFile, make_scene
+from marking.case_runner import BY_TIME
+from marking.course_startup import STARTUP_LIMIT
+from marking.marks import (
+    MARKS,
+    PAGE,
+    Mark,
+    by_student,
+    mean,
+    points_of,
+    write_marks,
+    write_student_pages,
+)
 from marking.rules import load_rules
-from marking.sandbox import Kind, available, hidden, namespace, shown
-from marking.sheets import MARKS, PAGE, write_marks, write_student_pages
-from marking.submissions import digest, find_submissions, prepare
-from marking.text import one_line
-from marking.unpacking import UnpackError
-from marking.venues import COURSES, make_scene
+from marking.submissions import UnpackError, digest, find_submissions, one_line, prepare
 from run_session.failure import RunError
+from run_session.files import find_package
 from run_session.launch import LOOPBACK
-from run_session.resources import find_package
 from run_session.session import Session
 
 NOT_RUN, SUBMISSION = "not run", "submission"
@@ -137,7 +141,7 @@ class MarkingTrial(ReportedTrial):
     def _drive(self, file: CaseFile) -> dict:
         folder = self._folder(self._case)
         file.write(folder)
-        command = [*namespace(self._kind), sys.executable, "-P", "-m", "marking.drive",
+        command = [*namespace(self._kind), sys.executable, "-P", "-m", "marking.case_runner",
                    str(folder)]
         environment = {**os.environ, MODEL_PATH: self._scene.models, "ROS_HOSTNAME": LOOPBACK}
         limits = self._rules.limits

@@ -13,9 +13,8 @@ from pathlib import Path
 from types import MappingProxyType
 
 from run_session.failure import RunError
-from run_session.master_choice import is_up, own_port
+from run_session.master import is_up, own_port, take_turn
 from run_session.processes import INTERRUPT_TIME, Child, Family
-from run_session.turn import take_turn
 
 LOOPBACK = "127.0.0.1"  # not localhost: that is ::1 too, where another program may listen
 ROSCORE_TIME = 300.0  # s, wall; an emulated ARM processor takes more than 20

@@ -1,13 +1,16 @@
-"""Observes a run through ROS: the car's true pose, simulated time, counts of messages."""
+"""Observes a run through ROS: the car's true pose, simulated time, messages and their checksums."""
 
 from __future__ import annotations
 
+import bisect
 import contextlib
+import hashlib
 import queue
+import struct
 import threading
 import time
 import xmlrpc.client
-from collections.abc import Callable, Iterable, Mapping, Set
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 
 import rosgraph
 import rospy
@@ -18,12 +21,144 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo
 from std_srvs.srv import Empty
 
-from run_session import names
-from run_session.asking import Asker
-from run_session.connections import Connections, look_up
-from run_session.course import Course
-from run_session.frames import FrameCount
+from run_session import simulator
+from run_session.course_file import CourseFile
+from run_session.master import Connections, look_up
 from run_session.simulator import place_of
+
+
+class ServicePoller:
+    """Keeps the connection open and reconnects when it breaks; stops when `ended` is set."""
+
+    def __init__(self, ended: threading.Event):
+        self._ended = ended
+        self._service, self._kind, self._proxy = "", Empty, None
+
+    def ticks(self, rate_hz: float, service: str = "", kind: type = Empty) -> Iterator[None]:
+        """Yields at this rate (wall time), each time the service is to be called."""
+        self._service, self._kind, self._proxy = service, kind, None
+        while not self._ended.is_set():
+            began = time.monotonic()
+            yield
+            self._ended.wait(max(0.0, began + 1.0 / rate_hz - time.monotonic()))
+
+    def call(self, *arguments: str) -> object | None:
+        """The service's response; None if the call failed."""
+        try:
+            if self._proxy is None:
+                self._proxy = rospy.ServiceProxy(self._service, self._kind, persistent=True)
+            return self._proxy(*arguments)
+        except (rospy.ServiceException, rospy.ROSException, OSError):
+            self._proxy = None
+            return None
+
+
+UNANSWERED_SAYS = "lockstep: no message on"  # in the simulator's warning, at most every 10 s
+
+
+class FrameCount:
+    """Images are counted by header.seq, so that one missed here counts as well.
+
+    In lockstep they count from the first one, because the follower runs from the beginning;
+    otherwise from the one that its first command answers.
+    """
+
+    def __init__(self, lockstep: bool):
+        self._lockstep = lockstep
+        self._first: int | None = None  # header.seq
+        self._numbers: list[int] = []  # header.seq of each image
+        self._times: list[float] = []  # s, simulated
+        self.commands = 0
+
+    def count_frame(self, message: CameraInfo) -> None:
+        """Count one more image, by its CameraInfo, which is smaller."""
+        if self._lockstep and self._first is None:
+            self._first = message.header.seq
+        self._numbers.append(message.header.seq)
+        self._times.append(message.header.stamp.to_sec())
+
+    def count_command(self, _message: Twist) -> None:
+        """Count one more command; a follower sends one for each image."""
+        if self._first is None and self._numbers:
+            self._first = self._numbers[-1]
+        self.commands += 1
+
+    def sent(self, until: float) -> int:
+        """Number of images that count, stamped up to this simulated time (s)."""
+        seen = bisect.bisect_right(self._times, until)
+        if self._first is None or not seen:
+            return 0
+        return max(0, self._numbers[seen - 1] - self._first + 1)
+
+    def later_than(self, time: float) -> bool:
+        """Whether an image after this simulated time (s) has arrived, and so all before it."""
+        return bool(self._times) and self._times[-1] > time
+
+
+def frame_figures(sent: int, commands: int, lockstep_log: list[str] | None) -> dict:
+    """Images sent, answered and dropped.
+
+    A follower answers each image with one command, so images without a command were dropped in
+    transit or by the follower. In lockstep (when the run's log is given) all are answered, unless
+    the simulator logged that it went on without an answer.
+    """
+    dropped = max(sent - commands, 0)
+    if lockstep_log is not None:
+        went_on = any(UNANSWERED_SAYS in line for line in lockstep_log)
+        dropped = max(dropped, 1) if went_on else 0
+    return {"frames_sent": sent, "frames_answered": sent - dropped, "frames_dropped": dropped}
+
+
+LAST_MESSAGE_TIME = 1.0  # s, wall, to wait for messages still in transit
+SEQ_AND_STAMP = struct.Struct("<III")  # how a serialised std_msgs/Header begins
+
+
+class Fingerprints:
+    """Takes the raw messages of all sensor topics; each begins with a header.
+
+    rospy allows one message type per topic and node: nothing else here may subscribe to these.
+    """
+
+    def __init__(self, topics: Iterable[str]):
+        self._topics = topics
+        self._lock = threading.Lock()
+        self._rows: dict[str, list[tuple[int, float, bytes]]] = {}  # seq, stamp in s, SHA-256
+
+    def start(self) -> None:
+        """Subscribe."""
+        for topic in self._topics:
+            rows = self._rows[topic] = []
+            rospy.Subscriber(topic, rospy.AnyMsg, self._take, callback_args=rows, queue_size=None,
+                             buff_size=2**22, tcp_nodelay=True)
+
+    def _take(self, message: rospy.AnyMsg, rows: list) -> None:
+        seq, secs, nsecs = SEQ_AND_STAMP.unpack_from(message._buff)
+        row = seq, secs + 1e-9 * nsecs, hashlib.sha256(message._buff).digest()
+        with self._lock:
+            rows.append(row)
+
+    def sums(self, until: float) -> dict[str, str | None]:
+        """For each topic the checksum of its messages up to this simulated time (s).
+
+        None if a message was missed: then the checksum would be meaningless.
+        """
+        give_up = time.monotonic() + LAST_MESSAGE_TIME
+        while not self._later_than(until) and time.monotonic() < give_up:
+            time.sleep(0.01)
+        with self._lock:
+            return {topic: _sum(rows, until) for topic, rows in self._rows.items()}
+
+    def _later_than(self, time_s: float) -> bool:
+        with self._lock:
+            return all(rows and rows[-1][1] > time_s for rows in self._rows.values())
+
+
+def _sum(rows: list[tuple[int, float, bytes]], until: float) -> str | None:
+    counted = [row for row in rows if row[1] <= until]
+    if not counted or counted[-1][0] - counted[0][0] != len(counted) - 1:
+        return None
+    return hashlib.sha256(b"".join(digest for _, _, digest in counted)).hexdigest()
+
 
 Seen = tuple[float, float, float, float]  # s, simulated; x, y, m; yaw, rad, in the world
 SAMPLE_RATE_HZ = 25.0
@@ -41,15 +176,15 @@ class Observer:
     The node must exist before use_sim_time is set: then it needs no /clock.
     """
 
-    def __init__(self, master_uri: str, robot: str, course: Course, lockstep: bool = False,
+    def __init__(self, master_uri: str, robot: str, course: CourseFile, lockstep: bool = False,
                  listened: Iterable[str] = ()):
         """`listened`: further topics that must be connected before time begins, in lockstep."""
         self._course, self._listened = course, tuple(listened)
         self._master_uri, self._robot, self._lockstep = master_uri, robot, lockstep
         self._samples: queue.SimpleQueue[tuple[float, Seen]] = queue.SimpleQueue()
         self._ended = threading.Event()
-        self._asker = Asker(self._ended)
-        self.missing = f"the simulator (service {names.WORLD})"
+        self._asker = ServicePoller(self._ended)
+        self.missing = f"the simulator (service {simulator.WORLD})"
         self.frames = FrameCount(lockstep)
         rospy.init_node("course_run", anonymous=True, disable_signals=True, disable_rosout=True)
         self._thread = threading.Thread(target=self._watch, daemon=True, name="pose")
@@ -99,7 +234,7 @@ class Observer:
             self._ask_poses()
 
     def _wait_for_car(self) -> None:
-        for _ in self._asker.ticks(SETUP_RATE_HZ, names.WORLD, GetWorldProperties):
+        for _ in self._asker.ticks(SETUP_RATE_HZ, simulator.WORLD, GetWorldProperties):
             reply = self._asker.call()
             if reply is None:
                 continue
@@ -109,7 +244,7 @@ class Observer:
 
     def _wait_for_controllers(self) -> None:
         """Wait until they run, or will with the first step: a paused world starts no controller."""
-        service = f"{self._course.controllers}/{names.LIST_CONTROLLERS}"
+        service = f"{self._course.controllers}/{simulator.LIST_CONTROLLERS}"
         self.missing = f"the car's controllers (service {service})"
         for _ in self._asker.ticks(SETUP_RATE_HZ, service, ListControllers):
             reply = self._asker.call()
@@ -135,14 +270,14 @@ class Observer:
             self.missing = missing
 
     def _begin(self) -> None:
-        self.missing = f"the beginning of simulated time (service {names.UNPAUSE})"
-        for _ in self._asker.ticks(SETUP_RATE_HZ, names.UNPAUSE, Empty):
+        self.missing = f"the beginning of simulated time (service {simulator.UNPAUSE})"
+        for _ in self._asker.ticks(SETUP_RATE_HZ, simulator.UNPAUSE, Empty):
             if self._asker.call() is not None:
                 self.missing = f"the first pose (topic {self._course.odometry})"
                 return
 
     def _ask_poses(self) -> None:
-        for _ in self._asker.ticks(SAMPLE_RATE_HZ, names.POSE, GetModelState):
+        for _ in self._asker.ticks(SAMPLE_RATE_HZ, simulator.POSE, GetModelState):
             reply = self._asker.call(self._robot, "world")
             if reply is not None and reply.success:
                 self._put(reply.header.stamp, reply.pose)
@@ -166,7 +301,7 @@ def missing_controller(states: Mapping[str, str], wanted: Set[str]) -> str | Non
     return None
 
 
-def missing_connection(found: Connections, me: str, course: Course) -> str | None:
+def missing_connection(found: Connections, me: str, course: CourseFile) -> str | None:
     """What a run in lockstep still waits for before time begins, in words; None: nothing.
 
     From the first image on, the follower must answer, and this node (`me`) get pose and answer.

@@ -1,19 +1,115 @@
-"""One run's processes, with one folder for results: all of them end with it."""
+"""One run: its folder for results, progress line, versions, and processes that end with it."""
 
 from __future__ import annotations
 
 import contextlib
+import importlib.metadata
 import json
 import os
+import platform
+import shutil
 import subprocess
-from collections.abc import Callable, Mapping
+import sys
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import TextIO
 
 from run_session.failure import RunError
 from run_session.files import check_space
 from run_session.launch import Launched
 from run_session.processes import Child, Family
-from run_session.status_line import StatusLine
+
+PLAIN_PERIOD = 10.0  # s, simulated
+TERMINAL_PERIOD = 0.2  # s, wall
+RATE_WINDOW = 5.0  # s, wall, over which the real-time factor is taken
+
+
+class StatusLine:
+    """Knows where to write and when a line is due; the text comes from the caller."""
+
+    def __init__(self, stream: TextIO | None = None):
+        self._stream = stream or sys.stdout
+        self._in_place = self._stream.isatty()
+        self._shown_at, self._next_plain = 0.0, 0.0
+        self._times: deque[tuple[float, float]] = deque()
+        self._open, self._part = False, ""
+
+    @property
+    def factor(self) -> float:
+        """Real-time factor: simulated over wall time, of the last RATE_WINDOW."""
+        (wall, simulated), (now, latest) = self._times[0], self._times[-1]
+        return (latest - simulated) / (now - wall) if now > wall else 0.0
+
+    def say(self, text: str) -> None:
+        """Print a line that is not overwritten."""
+        self.end()
+        print(text, file=self._stream, flush=True)
+
+    def status(self, text: str) -> None:
+        """Show what is being waited for, on a terminal only."""
+        if self._in_place:
+            self._rewrite(text)
+
+    def update(self, simulated: float, make_line: Callable[[], str], part: str = "") -> None:
+        """Take another simulated time (s), which begins again with each part of the run.
+
+        `make_line` is called if a line is due.
+        """
+        if part != self._part:
+            self.end()
+            self._times.clear()
+            self._next_plain, self._part = 0.0, part
+        now = time.monotonic()
+        self._times.append((now, simulated))
+        while now - self._times[0][0] > RATE_WINDOW:
+            self._times.popleft()
+        if self._in_place and now - self._shown_at >= TERMINAL_PERIOD:
+            self._shown_at = now
+            self._rewrite(make_line())
+        elif not self._in_place and simulated >= self._next_plain:
+            self._next_plain = (simulated // PLAIN_PERIOD + 1) * PLAIN_PERIOD
+            self.say(make_line())
+
+    def end(self) -> None:
+        """Leave the line as it is and go to the next."""
+        if self._open:
+            print(file=self._stream, flush=True)
+        self._open = False
+
+    def _rewrite(self, text: str) -> None:
+        shown = text[: shutil.get_terminal_size().columns - 1]  # a wrapped line cannot be rewritten
+        print(f"\r{shown}\x1b[K", end="", file=self._stream, flush=True)
+        self._open = True
+
+
+PACKAGES = ("pybullet", "moderngl", "opencv-python-headless", "numpy")
+RENDERER_SAYS = "Cameras are drawn by"  # the simulator's log line
+
+
+def versions(root: Path, log: Iterable[str]) -> dict:
+    """Versions by name; the renderer is as the simulator logged it."""
+    found = {"python": platform.python_version(), "machine": platform.platform()}
+    for package in PACKAGES:
+        try:
+            found[package] = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            found[package] = None
+    drawn = (line.partition(RENDERER_SAYS)[2].strip() for line in log if RENDERER_SAYS in line)
+    found["renderer"] = next(drawn, None)
+    found["revision"] = _revision(root)
+    return found
+
+
+def _revision(root: Path) -> str | None:
+    command = ["git", "-C", str(root), "describe", "--always", "--dirty"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=0.5, check=True)
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.strip()
+
 
 DRIVEN = (0, 1)  # exit codes of a program whose drive took place
 

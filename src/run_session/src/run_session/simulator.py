@@ -16,6 +16,11 @@ from std_srvs.srv import Empty
 
 from run_session.failure import RunError
 
+WORLD, POSE = "/gazebo/get_world_properties", "/gazebo/get_model_state"
+UNPAUSE = "/gazebo/unpause_physics"
+LIST_CONTROLLERS = "controller_manager/list_controllers"  # below its namespace
+
+
 WAFFLE = "turtlebot3_waffle"
 Place = tuple[float, float, float]  # x, y, m; yaw, rad
 FAILURES = (rospy.ServiceException, rospy.ROSException, OSError)

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import psutil
 
-from run_session import cpu
-from run_session.versions import versions
+from run_session import processes
+from run_session.session import versions
 
 
 def describe() -> dict:
@@ -47,7 +47,7 @@ def _ours() -> float:
     """s that this process, its children that have ended and those that live have worked."""
     times = os.times()
     ended = times.user + times.system + times.children_user + times.children_system
-    return ended + sum(process.cpu for process in cpu.processes())
+    return ended + sum(process.cpu for process in processes.processes())
 
 
 def _processor() -> str:

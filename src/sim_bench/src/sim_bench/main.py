@@ -7,7 +7,7 @@ import importlib
 import os
 import time
 
-from evaluation.trial.program import NOT_RUN, PASSED, complain, run_program
+from evaluation.command_line import NOT_RUN, PASSED, complain, run_program
 from run_session.failure import RunError
 from sim_bench import machine
 from sim_bench.acceptance import judge

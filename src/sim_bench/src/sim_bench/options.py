@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from evaluation.trial.command_line import Parser
+from evaluation.command_line import Parser
 from run_session.failure import RunError
 
 PARTS = ("limits", "renderer", "step", "growth", "startup", "ros", "fast", "robots", "respawn",

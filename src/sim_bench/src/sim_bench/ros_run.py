@@ -14,7 +14,7 @@ from pathlib import Path
 
 from run_session.failure import RunError
 from run_session.launch import describe_exit
-from run_session.master_choice import is_up
+from run_session.master import is_up
 from run_session.processes import Child, Family
 from sim_bench.figures import Figure, figure
 from sim_bench.settings import Settings

@@ -14,7 +14,7 @@ import time
 from collections.abc import Sequence
 
 from run_session import simulator
-from run_session.cpu import memory
+from run_session.processes import memory
 from sim_bench.course_drive import (
     SIMULATOR,
     Follower,

@@ -14,7 +14,7 @@ import rospkg
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from run_session import simulator
-from run_session.cpu import memory
+from run_session.processes import memory
 from sim_bench.course import Course, drive_of
 from sim_bench.figures import Figure, figure, ratio
 from sim_bench.parts.memory import SIMULATOR, growth_percent

@@ -16,7 +16,7 @@ import statistics
 import time
 
 from run_session import simulator
-from run_session.cpu import CpuMeter
+from run_session.processes import CpuMeter
 from sim_bench.course_drive import (
     FOLLOWER,
     SIMULATOR,

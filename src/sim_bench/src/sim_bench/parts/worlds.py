@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from run_session import simulator
-from run_session.cpu import CpuMeter
+from run_session.processes import CpuMeter
 from sim_bench import made_worlds
 from sim_bench.figures import Figure, figure
 from sim_bench.made_worlds import MadeWorld

@@ -1,1 +1,0 @@
-"""AutoRace 2020 driven by the lessons of learning_autorace, scored mission by mission."""

@@ -1,1 +1,0 @@
-"""Drives by laser through halls with columns: must arrive and touch nothing."""

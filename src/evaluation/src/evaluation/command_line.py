@@ -1,0 +1,105 @@
+"""The programs' command lines, exit codes and errors: one line that says what to type instead."""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import re
+import sys
+from collections.abc import Callable, Iterable
+from functools import partial
+from pathlib import Path
+
+from racecar_description.track.errors import TrackError
+
+from run_session.failure import RunError
+from run_session.interruption import interruptible
+from trial_worlds.errors import WorldError
+
+MOST = 999_999          # largest count or seed
+LARGEST_SEED = 999_999_999
+LEAST_PACE, MOST_PACE = 0.01, 20.0  # no machine can keep up with more
+
+
+class Parser(argparse.ArgumentParser):
+    """Accepts no abbreviated options; its errors are RunErrors."""
+
+    def __init__(self, package: str = "evaluation", **settings: object) -> None:
+        super().__init__(**{"allow_abbrev": False, **settings})
+        self._package = package  # to which the program belongs; empty: it is a script in scripts/
+
+    def error(self, message: str) -> None:
+        """Raise a RunError that says where the options are listed."""
+        start = f"rosrun {self._package} " if self._package else "scripts/"
+        raise RunError(f"{message} (see: {start}{self.prog.split()[0]} --help)")  # without a verb
+
+    def add_whole(self, flag: str, default: int | None, text: str, *, variable: str | None = None,
+                  least: int = 0, most: int = MOST) -> None:
+        """Add an integer option; `variable`: its name in the Makefile, if not the option's word."""
+        variable = flag[2:].upper() if variable is None else variable
+        name = flag if "-" in variable or not variable else f"{flag} ({variable}=)"
+        self.add_argument(
+            flag, type=partial(whole, name, least=least, most=most), default=default, metavar="N",
+            help=f"{text} ({default or 0})")
+
+    def add_pace(self, text: str) -> None:
+        """Add --real-time-factor, simulated seconds per second."""
+        self.add_argument(
+            "--real-time-factor", metavar="X", default=1.0, help=text, type=partial(
+                number, "--real-time-factor (PACE=)", least=LEAST_PACE, most=MOST_PACE))
+
+    def add_out(self, default: str, text: str) -> None:
+        """Add --out, a folder."""
+        self.add_argument("--out", type=Path, default=Path(default), metavar="DIR",
+                          help=f"where {text} go ({default})")
+
+
+def whole(name: str, text: str, least: int = 0, most: int = MOST) -> int:
+    """A whole number written in digits, or RunError."""
+    if not re.fullmatch(r"[0-9]{1,9}", text) or not least <= int(text) <= most:
+        raise RunError(f"{name} must be a whole number, {least} to {most}; got {text!r}")
+    return int(text)
+
+
+def number(name: str, text: str, least: float, most: float, what: str = "a number") -> float:
+    """A number written without an exponent, or RunError; `what` names it and its unit."""
+    if not re.fullmatch(r"[0-9]{1,9}(\.[0-9]{1,6})?", text) or not least <= float(text) <= most:
+        raise RunError(f"{name} must be {what}, {least:g} to {most:g}; got {text!r}")
+    return float(text)
+
+
+def one_of(kind: str, variable: str, names: Iterable[str], name: str) -> str:
+    """The name, or RunError that lists the known ones; `variable` is its name in the Makefile."""
+    known = tuple(names)
+    if name not in known:
+        raise RunError(f"no {kind} {name!r} ({variable}=); there are: {', '.join(known) or 'none'}")
+    return name
+
+
+PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
+
+
+def run_program(name: str, work: Callable[[], int]) -> int:
+    """Do the work; returns its exit code, or prints the error and returns another."""
+    try:
+        with interruptible():
+            return work()
+    except PermissionError as refused:
+        complain(name, RunError(f"you may not write {refused.filename}: cd to a folder of yours, "
+                                "or give one with --out") if refused.filename else refused)
+        return NOT_RUN
+    except (RunError, TrackError, WorldError, OSError) as failure:
+        full = isinstance(failure, OSError) and failure.errno == errno.ENOSPC
+        complain(name, RunError(f"no space left for {failure.filename or 'what is written'}: make "
+                                "room, or give a folder elsewhere with --out") if full else failure)
+        return NOT_RUN
+    except KeyboardInterrupt:
+        print(f"{name}: interrupted; all processes ended", file=sys.stderr)
+        return INTERRUPTED
+
+
+def complain(name: str, failure: Exception) -> None:
+    """Print the failure's details, if any, then its one line."""
+    if details := getattr(failure, "details", ""):
+        print(details, file=sys.stderr)
+    print(f"{name}: {failure}", file=sys.stderr)

@@ -1,1 +1,0 @@
-"""The simulated house: its file, its ground, and the observers of a robot that drives in it."""

@@ -1,0 +1,309 @@
+"""A single drive with supervision and video: started, observed, ended and reported."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from pathlib import Path
+from typing import ClassVar
+
+from evaluation.command_line import NOT_PASSED, PASSED, Parser, run_program
+from evaluation.film import FilmFile
+from evaluation.lap import LapScorer, Sample, fingerprint
+from run_session.course_file import CourseFile
+from run_session.failure import RunError
+from run_session.interruption import interruptible
+from run_session.launch import Launched
+from run_session.observer import Fingerprints, Observer, frame_figures
+from run_session.processes import read_log
+from run_session.session import Session, StatusLine, versions
+
+Outcome = tuple[str, str]  # a word, and the reason
+# s, wall; an emulated ARM processor takes minutes to start, and seconds for its first image
+STARTUP_TIMEOUT, STUCK_TIMEOUT = 300.0, 60.0
+EARLIER = "earlier"  # a folder in `out`
+
+
+class LiveDrive(ABC):
+    """One drive; a report is written even if it ended early."""
+
+    program: ClassVar[str]
+    does: ClassVar[str]  # for --help
+    ends: ClassVar[str]  # what the exit codes mean
+    usual_out: ClassVar[str]  # where results go, for --help
+    writes: ClassVar[Sequence[str]]  # files in `out`
+    stay: ClassVar[Sequence[str]] = ()  # those of the last run that stay until new ones are whole
+    vehicle: ClassVar[str] = "car"
+    logs: ClassVar[str] = "roslaunch.log"  # files in which the simulator names its renderer
+    driver = ""  # the script that drives, for messages
+
+    def __init__(self, options: argparse.Namespace):
+        self.options, self.out = options, options.out
+        self.progress = StatusLine()
+        self.film: FilmFile | None = None
+        self._time: float | None = None  # s, simulated, at the last check
+        self._since = 0.0  # s, wall, since when simulated time has had this value
+
+    # --- options
+
+    @classmethod
+    @abstractmethod
+    def add_options(cls, parser: Parser) -> None:
+        """Add the options besides those that every drive has."""
+
+    @classmethod
+    def check(cls, options: argparse.Namespace) -> argparse.Namespace:
+        """The completed options; RunError if they contradict one another."""
+        return options
+
+    @classmethod
+    def parse(cls, arguments: Sequence[str]) -> argparse.Namespace:
+        """Options from the command line, or RunError."""
+        parser = Parser(prog=f"{cls.program}.py", description=cls.does,
+                        epilog=f"Exit code: {cls.ends}, 2 could not run.")
+        cls.add_options(parser)
+        add = parser.add_argument
+        add("--out", type=Path, metavar="DIR",
+            help=f"where {', '.join(cls.writes)} and log/ go ({cls.usual_out})")
+        add("--no-video", dest="video", action="store_false", help="write no run.mp4")
+        add("--startup-timeout", type=float, default=STARTUP_TIMEOUT, metavar="S",
+            help=f"wall seconds for what is started to be there ({STARTUP_TIMEOUT:g})")
+        add("--stuck-timeout", type=float, default=STUCK_TIMEOUT, metavar="S",
+            help=f"wall seconds that simulated time may stand still ({STUCK_TIMEOUT:g})")
+        options = cls.check(parser.parse_args(arguments))
+        options.out = (options.out or Path(cls.usual_out)).resolve()
+        return options
+
+    # --- the drive
+
+    @abstractmethod
+    def bring_up(self, launched: Launched) -> None:
+        """Start everything and wait until it is up."""
+
+    @abstractmethod
+    def watch(self, launched: Launched) -> Outcome:
+        """Observe the drive; returns its outcome when it is over."""
+
+    @abstractmethod
+    def end(self) -> None:
+        """Do the final counts while everything still runs; then stop observing."""
+
+    def check_time(self, launched: Launched, now: float) -> None:
+        """RunError if a program died, or if simulated time, s, has stood still for too long."""
+        launched.check(now)
+        if now != self._time:
+            self._time, self._since = now, time.monotonic()
+        still = time.monotonic() - self._since
+        if still > self.options.stuck_timeout:
+            raise RunError(f"simulated time has stood still at {now:.1f} s for {still:.0f} s:"
+                           " the simulator is paused or hangs")
+
+    # --- results
+
+    @property
+    @abstractmethod
+    def was_seen(self) -> bool:
+        """Whether there is anything to report."""
+
+    @abstractmethod
+    def figures(self, outcome: Outcome, log: list[str]) -> dict:
+        """The figures for report.json; `log` has the simulator's output lines."""
+
+    @abstractmethod
+    def write(self, report: dict) -> list[str]:
+        """Write pictures and report.json; returns the summary lines."""
+
+    @abstractmethod
+    def faults(self, outcome: Outcome) -> list[str]:
+        """Faults, one line each; "" for one that the report already names."""
+
+
+def run_program_of(kind: type[LiveDrive], arguments: Sequence[str]) -> int:
+    """Run a drive with this command line; returns the exit code."""
+    return run_program(kind.program, lambda: run_live(kind(kind.parse(arguments))))
+
+
+def run_live(drive: LiveDrive) -> int:
+    """Run from start to end; returns the exit code, or raises the exception that ended it early."""
+    _make_room(drive)
+    early, outcome = None, ("ended early", "interrupted")
+    try:
+        with Session(drive.out) as session:
+            launched = session.launched(drive.vehicle, drive.driver)
+            try:
+                drive.progress.status("starting roscore")
+                launched.start_roscore()
+                if why := launched.why_not_callers:
+                    drive.progress.say(why[0] % why[1:])
+                drive.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
+                drive.bring_up(launched)
+                outcome = drive.watch(launched)
+            except (KeyboardInterrupt, RunError) as ended:
+                early, outcome = ended, ("ended early", str(ended) or "interrupted")
+            if drive.film is not None:
+                drive.film.stop()
+            session.family.spared = drive.film.process_id if drive.film else None
+            drive.end()
+    except KeyboardInterrupt as ended:  # during the shutdown: results are still reported
+        early = ended
+    found = None
+    try:
+        if drive.was_seen:
+            found = _report(drive, outcome, launched.log_folder)
+    finally:
+        with interruptible():
+            _finish_film(drive, found)
+    if early is not None:
+        raise early
+    faults = drive.faults(outcome)
+    for fault in filter(None, faults):
+        print(f"{drive.program}: {fault}", file=sys.stderr)
+    return NOT_PASSED if faults else PASSED
+
+
+def _report(drive: LiveDrive, outcome: Outcome, log_folder: Path) -> dict:
+    """Write and show the report, still without the video, which may fail to finish."""
+    log = [line for path in sorted(log_folder.glob(drive.logs)) for line in read_log(path)]
+    found = drive.figures(outcome, log)
+    found |= {"film": None, "versions": versions(Path(__file__).parent, log)}
+    drive.progress.say("\n" + "\n".join(drive.write(found)))
+    return found
+
+
+def _finish_film(drive: LiveDrive, found: dict | None) -> None:
+    """Finish the video and add it to the report, or say why there is none; then list all files."""
+    fault = drive.film.close() if drive.film else ""
+    if fault:
+        print(f"{drive.program}: no film: {fault}", file=sys.stderr)
+    if found is None:
+        return
+    if drive.film and drive.film.codec:
+        drive.write(found | {"film": drive.film.codec})
+    here = Path.cwd()
+    made = [drive.out / name for name in drive.writes if (drive.out / name).exists()]
+    shown = [str(path.relative_to(here) if path.is_relative_to(here) else path) for path in made]
+    drive.progress.say(f"files: {'  '.join(shown)}")
+
+
+def _make_room(drive: LiveDrive) -> None:
+    """Move the previous run's results to EARLIER, so that the folder holds only this run's."""
+    earlier = drive.out / EARLIER
+    try:
+        drive.out.mkdir(parents=True, exist_ok=True)
+        owned = (drive.out / name for name in drive.writes if name not in drive.stay)
+        for path in filter(Path.exists, owned):
+            earlier.mkdir(exist_ok=True)
+            path.replace(earlier / path.name)
+        for half in drive.out.glob("*.part.*"):  # from a video whose run was killed
+            half.unlink()
+    except PermissionError:
+        raise
+    except OSError as error:
+        raise RunError(f"--out {drive.out}: {error.strerror}") from error
+
+
+LOOK_PERIOD = 0.05  # s, wall, between two checks of processes and samples
+
+
+class CarDrive(LiveDrive):
+    """Options are those of LiveDrive and `fast`; `drive` scores and keeps the samples."""
+
+    def __init__(self, options: argparse.Namespace, course: CourseFile, drive: LapScorer):
+        """`drive` has `samples`, takes one more by `add`, and says when it is `over`."""
+        super().__init__(options)
+        self.course, self.drive = course, drive
+        self.fingerprints: Fingerprints | None = None
+        self._first_at = self._last_at = time.monotonic()  # s, wall: arrival of these samples
+        self._observer: Observer | None = None
+        self._frames = 0, 0  # images and commands
+        self.sensor_sums: dict[str, str | None] = {}
+
+    @abstractmethod
+    def launch_words(self) -> Sequence[str]:
+        """Arguments of roslaunch: package, launch file, its arguments."""
+
+    @abstractmethod
+    def outcome(self) -> Outcome:
+        """The outcome of a drive that is over."""
+
+    @abstractmethod
+    def line(self) -> str:
+        """The progress line."""
+
+    def bring_up(self, launched: Launched) -> None:
+        """Start everything and wait until the car is there."""
+        words = self.launch_words()
+        listened = self.course.sensors if self.fingerprints else ()
+        self._observer = Observer(launched.master_uri, self.course.robot_name(words[2:]),
+                                  self.course, lockstep=self.options.fast, listened=listened)
+        launched.start("roslaunch", ["roslaunch", *words])
+        if self.fingerprints:
+            self.fingerprints.start()  # before time may begin
+        self._observer.start()
+        if self.film is not None:
+            self.film.start()
+        launched.wait_for(lambda: self._observer.missing, self._take_samples,
+                          self.options.startup_timeout, self.progress.status, pause=0.0)
+
+    def watch(self, launched: Launched) -> Outcome:
+        """Follow the car until the drive is over."""
+        while not self.drive.over:
+            self._take_samples()
+            now = self.drive.samples[-1].time
+            self.progress.update(now, self.line)
+            self.check_time(launched, now)
+        return self.outcome()
+
+    def _take_samples(self) -> int:
+        """Score the samples of the last LOOK_PERIOD; those after the end do not count."""
+        arrivals = self._observer.samples(LOOK_PERIOD)
+        samples: list[Sample] = self.drive.samples
+        for arrived, seen in arrivals:
+            sample = Sample(*seen)
+            if samples and self.drive.over:
+                break
+            if not samples:
+                self._first_at = self._last_at = arrived
+            elif sample.time > samples[-1].time:
+                self._last_at = arrived
+            self.drive.add(sample)
+        return len(arrivals)
+
+    def end(self) -> None:
+        """Count the images up to the last sample, and stop observing."""
+        if self._observer is None:
+            return
+        if self.was_seen:
+            self._frames = self._observer.count(self.drive.samples[-1].time)
+            if self.fingerprints:
+                self.sensor_sums = self.fingerprints.sums(self.drive.samples[-1].time)
+        self._observer.stop()
+
+    @property
+    def was_seen(self) -> bool:
+        return bool(self.drive.samples)
+
+    @property
+    def simulated(self) -> float:
+        """Simulated time from the first sample to the last, s."""
+        samples = self.drive.samples
+        return samples[-1].time - samples[0].time if samples else 0.0
+
+    def counted(self, log: list[str], digits: int) -> dict:
+        """Frames, times and the drive's checksum, for the report."""
+        simulated, wall = self.simulated, self._last_at - self._first_at
+        return {**frame_figures(*self._frames, log if self.options.fast else None),
+                "drive_sha256": fingerprint(self.drive),
+                "simulated_s": round(simulated, digits), "wall_s": round(wall, digits),
+                "real_time_factor": round(simulated / wall, digits) if wall > 0 else None}
+
+    def fast_arguments(self) -> list[str]:
+        """Launch arguments to run as fast as possible, in lockstep."""
+        if not self.options.fast:
+            return []
+        # At five times real time the usual 100 Hz would wake every node 500 times a second.
+        return ["paused:=true", "real_time_factor:=0",
+                f"lockstep:={','.join(self.course.lockstep)}", "pub_clock_frequency:=30"]

@@ -1,1 +1,0 @@
-"""How well amcl localises, relocalises and tracks a robot in the simulated house."""

@@ -1,0 +1,429 @@
+"""The drives of amcl's trials: global localisation, kidnapped robot, tracking, CPU load."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
+
+import numpy as np
+import rospy
+from dynamic_reconfigure.msg import Config, IntParameter
+from dynamic_reconfigure.srv import Reconfigure
+from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
+from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
+from sensor_msgs.msg import LaserScan
+from std_srvs.srv import Empty
+
+from evaluation.house import ROBOT, Watch, told_pose
+from run_session import simulator
+from run_session.failure import RunError
+from run_session.launch import Launched
+from run_session.processes import processes
+from run_session.session import StatusLine
+from trial_worlds.house import Ground
+
+FINDING, KIDNAPS = "finding", "kidnaps"  # the two sets of trials
+RIGHT_OFF, RIGHT_OFF_DEG = 0.3, 15.0  # m and degrees: largest error of a pose that counts as right
+HOLD = 20.0  # s, simulated, for which it must stay right
+LIMITS = {FINDING: 60.0, KIDNAPS: 120.0}  # s, simulated, within which it must be right
+LEAST_SHARES = {FINDING: 0.95, KIDNAPS: 0.8}
+MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # m and degrees: mean error while tracking
+MOST_CPU = 30.0  # percent of a core
+LIMITS_IN_REPORT = {"right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within": LIMITS,
+                    "least_shares": LEAST_SHARES, "tracking": [MOST_OFF, MOST_OFF_DEG],
+                    "cpu": MOST_CPU}
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One robot that had to be localised; m, s simulated, degrees."""
+
+    set: str
+    number: int
+    start: tuple[float, float, float]  # x, y, yaw in the world; m, rad
+    took: float | None  # until it was right for HOLD; None: it never was
+    off: float | None  # error at the end; None: there was no pose
+    off_deg: float | None
+    touched: int
+
+    @property
+    def name(self) -> str:
+        """Its case's name."""
+        return f"{self.set}-{self.number}"
+
+    @property
+    def right(self) -> bool:
+        """Whether it was localised in time."""
+        return self.took is not None and self.took <= LIMITS[self.set]
+
+    @property
+    def line(self) -> str:
+        """A one-line summary."""
+        found = "not found" if self.took is None else f"found after {self.took:.1f} s"
+        late = "" if self.right or self.took is None else ", too late"
+        end = (", no pose at the end" if self.off is None else
+               f", at the end {self.off * 100:.1f} cm and {self.off_deg:.1f}° off")
+        return f"{self.set} {self.number}: {found}{late}{end}"
+
+
+@dataclass(frozen=True)
+class Tracking:
+    """A long drive from a known pose; m, s simulated, degrees."""
+
+    time: float
+    driven: float
+    off: float  # mean error
+    off_deg: float
+    largest_off: float
+    largest_off_deg: float
+
+    name: ClassVar[str] = "tracking"  # its case's name
+
+    @property
+    def passed(self) -> bool:
+        """Whether the mean errors are within the limits."""
+        return self.off <= MOST_OFF and self.off_deg <= MOST_OFF_DEG
+
+    @property
+    def line(self) -> str:
+        """A one-line summary."""
+        return f"tracking: {self.off * 100:.1f} cm, {self.off_deg:.1f}° off in the mean"
+
+    @property
+    def row(self) -> tuple[str, str, str, str]:
+        """Of the table."""
+        return (f"tracking, {self.time:.0f} s", f"{self.off * 100:.1f} cm, {self.off_deg:.1f}°",
+                f"{MOST_OFF * 100:.0f} cm, {MOST_OFF_DEG:.0f}°",
+                f"largest {self.largest_off * 100:.1f} cm, {self.largest_off_deg:.1f}°")
+
+
+@dataclass(frozen=True)
+class Load:
+    """CPU time that amcl's process used; s."""
+
+    particles: int
+    simulated: float
+    wall: float
+    percent: float  # of one core: s of CPU time in 100 simulated s
+
+    name: ClassVar[str] = "load"  # its case's name
+
+    @property
+    def passed(self) -> bool:
+        """Whether it is within the limit."""
+        return self.percent <= MOST_CPU
+
+    @property
+    def line(self) -> str:
+        """A one-line summary."""
+        return f"load: {self.percent:.0f} % of a core"
+
+    @property
+    def row(self) -> tuple[str, str, str, str]:
+        """Of the table."""
+        return (f"amcl with {self.particles} particles", f"{self.percent:.0f} % of a core",
+                f"{MOST_CPU:.0f} %", f"real time x{self.simulated / self.wall:.2f}")
+
+
+Result = Trial | Tracking | Load
+
+
+def tracking(seconds: float, driven: float, errors: np.ndarray) -> Tracking:
+    """The result of a drive: simulated s, m driven, and errors (N, 2), m and rad."""
+    mean, largest = errors.mean(axis=0), errors.max(axis=0)
+    return Tracking(seconds, driven, float(mean[0]), float(np.degrees(mean[1])),
+                    float(largest[0]), float(np.degrees(largest[1])))
+
+
+def searched(kind: str, number: int, start: tuple[float, float, float], began: float,
+             times: np.ndarray, errors: np.ndarray, touched: int) -> Trial:
+    """The result of a localisation; times (N,), s, simulated; errors (N, 2), m and rad."""
+    since = right_since(times, errors)
+    held = since is not None and times[-1] - since >= HOLD
+    off, turned = (round(float(each), 4) for each in errors[-1]) if len(errors) else (None, None)
+    return Trial(kind, number, start, round(since - began, 2) if held else None, off,
+                 turned if turned is None else round(float(np.degrees(turned)), 3), touched)
+
+
+def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:
+    """The time from which on all errors (N, 2), m and rad, at times (N,), s, are small; or None."""
+    if not len(times):
+        return None
+    wrong = np.flatnonzero((errors > (RIGHT_OFF, np.radians(RIGHT_OFF_DEG))).any(axis=1))
+    first = wrong[-1] + 1 if len(wrong) else 0
+    return float(times[first]) if first < len(times) else None
+
+
+START_LIMIT, STILL_LIMIT = 120.0, 30.0  # s, wall
+LOOK_PERIOD = 0.05  # s, wall
+FENCE = 0.8  # m ahead of the robot
+TRUE, ENCODER = "<odometrySource>world<", "<odometrySource>encoder<"
+call_service = partial(simulator.call, wait=STILL_LIMIT)
+
+
+class LocalisationStack:
+    """Made once per run; all of its methods may raise RunError."""
+
+    def __init__(self, options: argparse.Namespace, ground: Ground, launched: Launched,
+                 map_file: str, progress: StatusLine):
+        self._launched, self._ground, self._progress = launched, ground, progress
+        launched.start_roscore()
+        self.watch = Watch()
+        launched.start("localisation", [
+            "roslaunch", "evaluation", "localisation.launch", f"map_file:={map_file}",
+            f"world_name:={options.house.world_path}", f"model:={options.house.model}",
+            f"seed:={options.seed}", f"real_time_factor:={options.real_time_factor:g}"])
+        self._told = rospy.Publisher("/initialpose", PoseWithCovarianceStamped, queue_size=1)
+        self._wait("the simulator", simulator.models)
+        self._start, self._by_wheels = options.house.start, None
+        self.use_odometry(by_wheels=True)
+        self.watch.start()
+        self._wait("the robot in the simulator", lambda: self.watch.records.truth)
+        self._wait("the map and amcl", lambda: self.watch.map is not None
+                   and self._told.get_num_connections() and self.watch.records.believed)
+
+    @property
+    def now(self) -> float:
+        """Simulated time, s."""
+        return self.watch.records.now
+
+    def may_go_on(self) -> bool:
+        """Whether the robot, going straight on, would stay on the map, which ends at the house."""
+        truth = self.watch.records.truth
+        if not truth:
+            return True
+        _, x, y, yaw = truth[-1]
+        point = np.array([x + FENCE * np.cos(yaw), y + FENCE * np.sin(yaw)])
+        walls = self._ground.walls
+        return bool(walls.contains(walls.cells_of(point)))
+
+    def use_odometry(self, by_wheels: bool) -> None:
+        """Respawn the robot, if necessary, with wheel odometry, or ground truth as TurtleBot3 has.
+
+        Ground truth would tell amcl where the robot was moved.
+        """
+        if self._by_wheels == by_wheels:
+            return
+        urdf = self._wait("the robot's description",
+                          lambda: rospy.get_param("/robot_description", ""))
+        if TRUE not in urdf:
+            raise RunError(f"/robot_description has no {TRUE}/odometrySource>: a kidnapped robot's "
+                           "odometry must not know of it")
+        if self._by_wheels is not None:
+            simulator.delete(ROBOT)
+        simulator.spawn_urdf(ROBOT, urdf.replace(TRUE, ENCODER) if by_wheels else urdf, "/",
+                             *self._start[:2])
+        self._by_wheels = by_wheels
+        self.watch.feelers = self._ground.feelers(urdf)
+
+    def put(self, place: np.ndarray) -> None:
+        """Move the robot to a pose (3,) in the world, unnoticed by its wheel odometry."""
+        simulator.put(ROBOT, tuple(place.tolist()), STILL_LIMIT)
+        self.watch.begin()
+        self._wait("the robot in its place", lambda: self.watch.records.truth and np.linalg.norm(
+            self.watch.records.true_pose[:2] - place[:2]) < 0.2)
+
+    def tell(self, place: np.ndarray) -> None:
+        """Publish an initial pose (3,), in the world's frame, as rviz's 2D Pose Estimate does."""
+        self._told.publish(told_pose(place, self.now))
+
+    def forget(self) -> None:
+        """Call /global_localization: the robot may be anywhere."""
+        call_service("/global_localization", Empty)
+
+    def look(self, part: str, what: str) -> None:
+        """Waits a little, checks that everything still runs, shows progress."""
+        before, began = self.now, time.monotonic()
+        while True:
+            time.sleep(LOOK_PERIOD)
+            self._launched.check(self.now)
+            if self.now > before:
+                break
+            if time.monotonic() - began > STILL_LIMIT:
+                raise RunError(f"no news of the robot for {STILL_LIMIT:.0f} s: the simulator hangs",
+                               self._launched.tail())
+        self.watch.records.show(self._progress, part, what)
+
+    def set_pace(self, factor: float) -> None:
+        """Set the real-time factor."""
+        now = call_service("/gazebo/get_physics_properties", GetPhysicsProperties)
+        call_service("/gazebo/set_physics_properties", SetPhysicsProperties,
+                     now.time_step, factor / now.time_step, now.gravity, now.ode_config)
+
+    def set_particles(self, count: int) -> None:
+        """Have amcl use constantly this many particles."""
+        names = "min_particles", "max_particles"
+        answer = call_service("/amcl/set_parameters", Reconfigure,
+                            Config(ints=[IntParameter(name, count) for name in names]))
+        taken = {each.name: each.value for each in answer.config.ints}
+        if any(taken.get(name) != count for name in names):
+            raise RunError(f"amcl does not take {count} for {' and '.join(names)}")
+
+    @staticmethod
+    def cpu() -> float:
+        """CPU time of amcl since its start, s."""
+        return sum(process.cpu for process in processes() if process.name == "amcl")
+
+    def _wait(self, what: str, condition: Callable[[], object]) -> object:
+        return self._launched.wait_for(what, condition, START_LIMIT, self._progress.status)
+
+
+SETTLE = 15.0  # s, simulated, after an initial pose, that do not count
+CARRIED = 2.0  # m, least straight distance that the robot is moved
+TOLD_OFF = (0.3, 0.3, 0.26)  # m in x and y, and rad: largest error of an initial pose
+PERIOD = 1.0  # s, simulated, between two checks whether it is localised
+MOST_DRAWS = 1000
+PARTICLES = 2000
+SPEED, TURN_RATE = 0.22, 0.8  # m/s, rad/s
+WEAVE = 0.15  # rad/s, of the random turns on the way
+AHEAD, BESIDE = np.radians((25.0, 75.0))  # to either side
+NEAR_AHEAD, NEAR_BESIDE = 0.55, 0.28  # m from the laser, below which it turns
+CLEAR_AHEAD = 0.8  # m, above which it goes straight on again
+
+
+def find(rig: LocalisationStack, ground: Ground, seed: int, number: int) -> Trial:
+    """Global localisation: a robot at an unknown place in the house."""
+    random = np.random.default_rng([seed, number, 0])
+    place = _draw_place(ground, random)
+    rig.put(place)
+    rig.forget()
+    return _search(rig, FINDING, number, place, random)
+
+
+def kidnap(rig: LocalisationStack, ground: Ground, seed: int, number: int) -> Trial:
+    """Kidnapped robot: a localised robot is moved elsewhere while it drives."""
+    random = np.random.default_rng([seed, number, 1])
+    _begin_known(rig, ground, random)
+    with wandering(seed, rig.may_go_on):
+        _watch_for(rig, SETTLE, f"before {KIDNAPS} {number}", "driving until it is carried away")
+    place = _draw_place(ground, random, rig.watch.records.true_pose)
+    rig.put(place)
+    return _search(rig, KIDNAPS, number, place, random)
+
+
+def track(rig: LocalisationStack, ground: Ground, seed: int, seconds: float) -> Tracking:
+    """A long drive from a slightly wrong initial pose; the first SETTLE seconds do not count."""
+    random = np.random.default_rng([seed, 0, 2])
+    _begin_known(rig, ground, random)
+    with wandering(seed, rig.may_go_on):
+        _watch_for(rig, SETTLE, "tracking", "finding itself")
+        since, before = rig.now, rig.watch.records.length
+        _watch_for(rig, seconds, "tracking", "driving")
+    records = rig.watch.records
+    _, errors = records.errors(since)
+    if not len(errors):
+        raise RunError("amcl said no pose while it should have tracked the robot")
+    return tracking(seconds, records.length - before, errors)
+
+
+def measure_load(rig: LocalisationStack, ground: Ground, seed: int, seconds: float) -> Load:
+    """CPU time of amcl with a constant number of particles, at real-time pace."""
+    rig.set_pace(1.0)
+    _begin_known(rig, ground, np.random.default_rng([seed, 0, 3]))
+    rig.set_particles(PARTICLES)
+    with wandering(seed, rig.may_go_on):
+        _watch_for(rig, SETTLE, "load", "driving off")
+        began, used, wall = rig.now, rig.cpu(), time.monotonic()
+        _watch_for(rig, seconds, "load", "driving")
+        simulated, used = rig.now - began, rig.cpu() - used
+        wall = time.monotonic() - wall
+    return Load(PARTICLES, simulated, wall, 100.0 * used / simulated)
+
+
+def _begin_known(rig: LocalisationStack, ground: Ground, random: np.random.Generator) -> None:
+    place = _draw_place(ground, random)
+    rig.put(place)
+    rig.tell(place + random.uniform(-1, 1, 3) * TOLD_OFF)
+
+
+def _search(rig: LocalisationStack, kind: str, number: int, place: np.ndarray,
+            random: np.random.Generator) -> Trial:
+    """Drives until the pose has been right for long enough, or no longer can be in time."""
+    began = looked = rig.now
+    since, what, part = None, "searching", f"{kind} {number}"
+    with wandering(int(random.integers(1 << 31)), rig.may_go_on):
+        while rig.now - began < LIMITS[kind] + HOLD:
+            rig.look(part, what)
+            if rig.now - looked < PERIOD:
+                continue
+            looked = rig.now
+            times, errors = rig.watch.records.errors(began)
+            since = right_since(times, errors)
+            what = "searching" if since is None else "right"
+            if since is not None and times[-1] - since >= HOLD:
+                break
+    times, errors = rig.watch.records.errors(began)
+    return searched(kind, number, tuple(np.round(place, 3).tolist()), began, times, errors,
+                    len(rig.watch.records.contacts))
+
+
+def _watch_for(rig: LocalisationStack, seconds: float, part: str, what: str) -> None:
+    until = rig.now + seconds
+    while rig.now < until:
+        rig.look(part, what)
+
+
+def _draw_place(ground: Ground, random: np.random.Generator,
+                away_from: np.ndarray | None = None) -> np.ndarray:
+    """A random pose (3,) in the world where the robot has room, CARRIED away from `away_from`."""
+    for _ in range(MOST_DRAWS):
+        place = ground.draw_goals(1, int(random.integers(1 << 31)))[0]
+        if away_from is None or np.linalg.norm(place[:2] - away_from[:2]) >= CARRIED:
+            return place
+    raise RunError(f"no place {CARRIED:g} m away: change the house file")
+
+
+class Steering:
+    """Chooses a velocity by a scan. It needs no map and no pose, as a lost robot has none."""
+
+    def __init__(self, seed: int):
+        self._random = np.random.default_rng([seed, 2])
+        self._turning = 0.0  # rad/s; 0: straight on
+
+    def choose(self, ranges: np.ndarray, bearings: np.ndarray, may_go_on: bool = True
+               ) -> tuple[float, float]:
+        """m/s and rad/s for ranges (N,), m, at bearings (N,), rad, -pi to pi, left is positive."""
+        ahead = ranges[np.abs(bearings) < AHEAD].min()
+        beside = ranges[np.abs(bearings) < BESIDE].min()
+        wanted = CLEAR_AHEAD if self._turning else NEAR_AHEAD
+        if not may_go_on or beside < NEAR_BESIDE or ahead < wanted:
+            if not self._turning:
+                left = ranges[(bearings > 0) & (bearings < 2)].mean()
+                right = ranges[(bearings < 0) & (bearings > -2)].mean()
+                self._turning = TURN_RATE if left > right else -TURN_RATE
+            return 0.0, self._turning
+        self._turning = 0.0
+        return SPEED, float(self._random.normal(0.0, WEAVE))
+
+
+@contextlib.contextmanager
+def wandering(seed: int, may_go_on: Callable[[], bool]) -> Iterator[None]:
+    """A context in which each scan is answered by a command; `may_go_on`: may it go straight on?"""
+    steering, commands = Steering(seed), rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+    ended = threading.Event()
+
+    def take(message: LaserScan) -> None:
+        ranges = np.array(message.ranges)
+        ranges[~(ranges >= message.range_min)] = message.range_max
+        bearings = message.angle_min + message.angle_increment * np.arange(len(ranges))
+        command = Twist()
+        command.linear.x, command.angular.z = steering.choose(
+            np.minimum(ranges, message.range_max), (bearings + np.pi) % (2 * np.pi) - np.pi,
+            may_go_on())
+        commands.publish(command)
+        if ended.is_set():  # meanwhile: the robot has already been stopped
+            commands.publish(Twist())
+
+    scans = rospy.Subscriber("/scan", LaserScan, take, queue_size=1)
+    try:
+        yield
+    finally:
+        scans.unregister()
+        ended.set()
+        commands.publish(Twist())

@@ -1,0 +1,203 @@
+"""`make navigation-trials`: move_base without a map through narrow yards and past people."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from evaluation import yard_judge
+from evaluation.command_line import Parser
+from evaluation.picture import CAR, FAINT, GOOD, chart, lap_colour, write_tiles
+from evaluation.report import grouped, table_of
+from evaluation.trial import ReportedTrial
+from evaluation.yard_drive import NavigationStack, YardCase, drive_task, prepare, task_of
+from evaluation.yard_judge import CROSSINGS, REACHED, YARDS, DriveResult, Judge
+from run_session.failure import RunError
+from run_session.files import find_package
+from run_session.session import Session
+from trial_worlds.crossing import APPROACH, PERSON_RADIUS, Crossing, world, yard_model
+from trial_worlds.yard import APRON, CELL, RADIUS, SIZE, draw_yard, places
+
+YARD = (-APRON * CELL, (SIZE + APRON) * CELL, -SIZE * CELL / 2, SIZE * CELL / 2)  # m: x, y
+ROOM = (-0.2, 5.2, *YARD[2:])
+TILE_WIDTH, CAPTION = 3.4, 0.25  # inches
+COLOURS = {REACHED: "#1b6ca8", "called reached": "#16a085", "contact": "#c0392b",
+           "walked into": "#8e44ad", "given up": "#c9782f", "late": "#7a8b99"}
+
+# Set, labels of x and y axis, and their values.
+Figure = Callable[[DriveResult], float]
+PANELS: tuple[tuple[str, str, str, Figure, Figure], ...] = (
+    (YARDS, "yard", "time by straight-line time",
+     lambda drive: drive.seed, lambda drive: drive.time / drive.straight_time),
+    (YARDS, "closest obstacle along the shortest way, cells", "time by straight-line time",
+     lambda drive: drive.drawn["closest_obstacle"],
+     lambda drive: drive.time / drive.straight_time),
+    (YARDS, "yard", "least air, cm",
+     lambda drive: drive.seed, lambda drive: (drive.to_obstacles or 0.0) * 100),
+    (CROSSINGS, "crossing", "least air to the person, cm",
+     lambda drive: drive.seed, lambda drive: (drive.to_person or 0.0) * 100))
+
+
+def write_chart(drives: Sequence[DriveResult], path: Path) -> None:
+    """Four panels; the colour says how a drive ended."""
+    with chart(path, 2, 2) as grid:
+        for axes, (kind, along, across, x, y) in zip(grid.flat, PANELS, strict=True):
+            _draw(axes, [drive for drive in drives if drive.set == kind], x, y)
+            axes.set_xlabel(along, fontsize=9)
+            axes.set_ylabel(across, fontsize=9)
+
+
+def _draw(axes: object, drives: Sequence[DriveResult], x: Figure, y: Figure) -> None:
+    for outcome, colour in COLOURS.items():
+        found = [drive for drive in drives if drive.outcome == outcome]
+        if found:
+            marker = "o" if outcome == REACHED else "x"
+            axes.plot([x(drive) for drive in found], [y(drive) for drive in found], marker,
+                      color=colour, label=f"{outcome}: {len(found)}")
+    if drives:
+        axes.legend(fontsize=8)
+    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+
+
+def write_sheets(drives: Sequence[DriveResult], out: Path) -> list[str]:
+    """Write yards.png and crossings.png below `out`; returns their names."""
+    written = []
+    sets = grouped(drives, lambda drive: drive.set)
+    for kind, edges, ground in ((YARDS, YARD, _draw_yard), (CROSSINGS, ROOM, _draw_walk)):
+        def draw(axes: object, group: list[DriveResult], edges=edges, ground=ground
+                 ) -> tuple[str, bool]:
+            axes.set(xlim=edges[:2], ylim=edges[2:])
+            ground(axes, group[0])
+            return _draw_ways(axes, group, out)
+
+        if kind in sets:
+            groups = list(grouped(sets[kind], lambda drive: drive.seed).values())
+            height = TILE_WIDTH * (edges[3] - edges[2]) / (edges[1] - edges[0]) + CAPTION
+            write_tiles(out / f"{kind}.png", groups, draw, (TILE_WIDTH, height))
+            written.append(f"{kind}.png")
+    return written
+
+
+def _draw_yard(axes: object, drive: DriveResult) -> None:
+    """Draw the columns and the shortest path."""
+    from matplotlib.collections import EllipseCollection
+
+    yard = draw_yard(drive.seed)
+    round_things = np.full(len(yard.cylinders), 2 * RADIUS)
+    axes.add_collection(EllipseCollection(
+        round_things, round_things, 0 * round_things, units="xy", facecolors=FAINT,
+        offsets=yard.cylinders, offset_transform=axes.transData))
+    axes.plot(*places(yard.path).T, color=GOOD, linewidth=3, alpha=0.4)
+
+
+def _draw_walk(axes: object, drive: DriveResult) -> None:
+    """Draw the strip that the person walks through."""
+    walk = Crossing(**drive.drawn)
+    begin, yaw = np.array(walk.begin[:2]), walk.heading
+    ends = np.array([begin, begin + 2 * APPROACH * np.array([np.cos(yaw), np.sin(yaw)])])
+    aside = PERSON_RADIUS * np.array([-np.sin(yaw), np.cos(yaw)])
+    axes.fill(*np.concatenate([ends + aside, ends[::-1] - aside]).T, color=lap_colour(3), alpha=0.5)
+
+
+def _draw_ways(axes: object, drives: list[DriveResult], out: Path) -> tuple[str, bool]:
+    """Draw the paths, with a dot where one missed its goal; returns the caption and success."""
+    for drive in drives:
+        path = out / "drives" / f"{drive.name}.json"
+        if path.exists():
+            way = np.array(json.loads(path.read_text()))[:, 1:3]
+            axes.plot(*way.T, color=lap_colour(drive.repeat), linewidth=1)
+            if not drive.reached:
+                axes.plot(*way[-1], "o", color=CAR, markersize=4)
+    said = ", ".join(f"{each.time:.0f} s" if each.reached else each.outcome for each in drives)
+    return f"{drives[0].seed}: {said}", all(each.reached for each in drives)
+
+
+PARAMETERS = Path("config") / "yard.yaml"
+
+
+class YardTrial(ReportedTrial):
+    """All drives run in one simulator, which is started for the first of them."""
+
+    program = "navigation_trials"
+    does = ("Drive the waffle by move_base, without a map, through narrow yards and past persons"
+            " who cross its way.")
+    good = "at least 95 %% of the yards crossed and no person touched"
+    writes = "report.json, report.html, pictures, worlds and drives"
+    result, derived, shared = DriveResult, ("score",), ("parameters",)
+
+    def __init__(self) -> None:
+        self._rig: NavigationStack | None = None
+
+    def add_options(self, parser: Parser) -> None:
+        parser.add_whole("--yards", 50, "narrow worlds")
+        parser.add_whole("--first-yard", 0, "seed of the first of them")
+        parser.add_whole("--repeats", 2, "drives through each of them")
+        parser.add_whole("--crossings", 20, "drives past a person")
+        parser.add_whole("--first-crossing", 0, "seed of the first of them")
+        parser.add_pace("how fast simulated time shall go (1)")
+        parser.add_argument("--parameters", type=Path, metavar="FILE", help="of move_base, over"
+                            f" turtlebot3_navigation's (evaluation/{PARAMETERS})")
+
+    def check(self, options: argparse.Namespace) -> None:
+        if not (options.yards and options.repeats) and not options.crossings:
+            raise RunError("no yards or repeats, and no crossings: nothing to drive")
+        options.parameters = (
+            options.parameters or find_package("evaluation") / PARAMETERS).resolve()
+        if not options.parameters.is_file():
+            raise RunError(f"--parameters {options.parameters}: no such file")
+        self._make_rig = partial(NavigationStack, real_time_factor=options.real_time_factor,
+                                 parameters=options.parameters)
+
+    def cases(self, options: argparse.Namespace) -> list[YardCase]:
+        yards = range(options.first_yard, options.first_yard + options.yards)
+        crossings = range(options.first_crossing, options.first_crossing + options.crossings)
+        trials = [(YARDS, seed, repeat) for repeat in range(options.repeats) for seed in yards]
+        trials += [(CROSSINGS, seed, 0) for seed in crossings]
+        return [YardCase("-".join(map(str, each)), *each) for each in trials]
+
+    def setup(self, session: Session, case: YardCase) -> None:
+        if self._rig is None:
+            self._rig = self._make_rig(session.launched("robot"))
+        self._out, self._case, self._task = session.out, case, task_of(case)
+        if case.set == YARDS:
+            path = session.out / "worlds" / f"yard_{case.seed}.world"
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(world(yard_model(draw_yard(case.seed))), encoding="utf-8")
+        prepare(self._rig, self._task)
+
+    def run(self) -> DriveResult:
+        """Run the drive; its path is written below drives/."""
+        judge = Judge(self._task.cylinders, RADIUS)
+        drove = drive_task(self._rig, self._task, judge)
+        path = self._out / "drives" / f"{self._case.name}.json"
+        path.parent.mkdir(exist_ok=True)
+        rounded = [[round(value, 4) for value in place] for place in judge.path]
+        path.write_text(json.dumps(rounded) + "\n", encoding="utf-8")
+        return drove
+
+    def passed(self, results: Sequence[DriveResult]) -> bool:
+        """Whether enough goals were reached, and the robot, while moving, touched nobody."""
+        touched = any(d.set == CROSSINGS and d.outcome == yard_judge.TOUCHED for d in results)
+        sets = grouped((d for d in results if d.outcome != yard_judge.WALKED_INTO), lambda d: d.set)
+        shares = [sum(d.reached for d in found) / len(found) for found in sets.values()]
+        return not touched and min(shares, default=1.0) >= yard_judge.LEAST_SHARE
+
+    def table(self, results: Sequence[DriveResult]) -> str:
+        return table_of(yard_judge.COLUMNS, yard_judge.summarize(results), left=())
+
+    def values(self, results: Sequence[DriveResult]) -> dict:
+        return {
+            "least_share_of_yards": yard_judge.LEAST_SHARE,
+            "passed": self.passed(results),
+            "summaries": yard_judge.summarize(results),
+            **super().values(results),
+        }
+
+    def pictures(self, results: Sequence[DriveResult], out: Path) -> list[str]:
+        write_chart(results, out / "trials.png")
+        return ["trials.png", *write_sheets(results, out)]

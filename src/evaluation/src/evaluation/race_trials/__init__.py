@@ -1,1 +1,0 @@
-"""Tests racecar followers over many laps, each with its own start, noise and light."""

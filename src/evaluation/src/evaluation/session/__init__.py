@@ -1,1 +1,0 @@
-"""The video of a run, and the course files."""

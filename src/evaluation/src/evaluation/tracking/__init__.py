@@ -1,1 +1,0 @@
-"""Following a red cylinder by camera: `make track`, and many seeded trials."""

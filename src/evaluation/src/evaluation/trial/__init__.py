@@ -1,1 +1,0 @@
-"""One protocol for all trials: cases, options, runner, table, report."""

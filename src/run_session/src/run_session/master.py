@@ -1,0 +1,220 @@
+"""ROS masters: which one a command uses, whether it is up, and who is connected to whom.
+
+As a program, for scripts/common.sh: prints the URI of a master that other terminals can join.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import socket
+import threading
+import time
+import xmlrpc.client
+from collections.abc import Iterable
+from dataclasses import dataclass
+from http.client import HTTPConnection, HTTPException
+from pathlib import Path
+from typing import IO
+from urllib.parse import urlsplit
+from xml.parsers.expat import ExpatError
+
+import psutil
+import rosgraph
+from rosgraph.network import is_local_address
+
+from run_session.failure import RunError
+
+ANSWER_TIME = 1.0  # s, wall, for one answer of a node
+
+
+@dataclass(frozen=True)
+class Connections:
+    """Node names by topic, and the publishers' open links: (publisher, topic, subscriber).
+
+    The master knows which nodes should be connected; only the publisher knows which are.
+    """
+
+    publishers: dict[str, frozenset[str]]
+    subscribers: dict[str, frozenset[str]]
+    links: frozenset[tuple[str, str, str]]
+
+    def missing_link(self, topic: str) -> str | None:
+        """The first connection of this topic that is not open yet, in words; None if all are."""
+        for publisher in sorted(self.publishers[topic]):
+            for subscriber in sorted(self.subscribers[topic] - {publisher}):
+                if (publisher, topic, subscriber) not in self.links:
+                    return f"the connection of {topic} from {publisher} to {subscriber}"
+        return None
+
+
+def look_up(master_uri: str, caller: str, topics: Iterable[str]) -> Connections:
+    """Query the master and each publisher of these topics; one that does not answer has no links.
+
+    Raises OSError, xmlrpc.client.Error or rosgraph.MasterException if the master fails.
+    """
+    master = rosgraph.Master(caller, master_uri)
+    publishing, subscribing, _ = master.getSystemState()
+    publishers = {topic: frozenset(nodes) for topic, nodes in publishing}
+    subscribers = {topic: frozenset(nodes) for topic, nodes in subscribing}
+    nobody: frozenset[str] = frozenset()
+    wanted = {topic: publishers.get(topic, nobody) for topic in topics}
+    nodes = nobody.union(*wanted.values())
+    return Connections(
+        wanted,
+        {topic: subscribers.get(topic, nobody) for topic in wanted},
+        frozenset(link for node in nodes for link in _links_of(master, caller, node)),
+    )
+
+
+def _links_of(master: rosgraph.Master, caller: str, node: str) -> list[tuple[str, str, str]]:
+    """A node's outgoing connections, from its getBusInfo (ROS slave API)."""
+    try:
+        slave = xmlrpc.client.ServerProxy(master.lookupNode(node), ImpatientTransport())
+        _, _, connections = slave.getBusInfo(caller)
+        return [
+            (node, str(topic), str(receiver))
+            for _, receiver, direction, _, topic, is_open, *_ in connections
+            if direction == "o" and is_open
+        ]
+    except (OSError, xmlrpc.client.Error, HTTPException, ExpatError, rosgraph.MasterException,
+            AttributeError, LookupError, TypeError, ValueError):
+        return []  # it hangs, is gone, or its answer is malformed
+
+
+class ImpatientTransport(xmlrpc.client.Transport):
+    """Hangs up after ANSWER_TIME, because a node may hang, or answer without an end."""
+
+    def make_connection(self, host: str) -> HTTPConnection:
+        self._connection = host, _Connection(host, timeout=ANSWER_TIME)
+        return self._connection[1]
+
+    def single_request(self, *request: object, **options: object) -> object:
+        limit = threading.Timer(ANSWER_TIME, lambda: self._connection[1].hang_up())
+        limit.start()
+        try:
+            return super().single_request(*request, **options)
+        finally:
+            limit.cancel()
+
+
+class _Connection(HTTPConnection):
+    """Can be ended while an answer is read, for which HTTPConnection lets its socket go."""
+
+    _connected: socket.socket | None = None
+
+    def connect(self) -> None:
+        super().connect()
+        self._connected = self.sock
+
+    def hang_up(self) -> None:
+        """From another thread: whoever reads then finds the end."""
+        if self._connected is not None:
+            with contextlib.suppress(OSError):  # it has just ended
+                self._connected.shutdown(socket.SHUT_RDWR)
+
+
+TURN_LIMIT = 300.0  # s, wall; as long as a roscore may take
+TURN_PERIOD = 0.05  # s, wall, between two attempts
+
+
+def take_turn(path: Path, limit: float = TURN_LIMIT) -> IO:
+    """Lock the file and return it: closing it releases the lock.
+
+    RunError if it is not released within `limit`, s, wall, or if it is another user's.
+    """
+    try:
+        number = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+    except OSError as error:
+        raise RunError(f"{path}: {error.strerror}: name a folder of your own for temporary files,"
+                       " such as: export TMPDIR=~/tmp") from error
+    file = os.fdopen(number, "r+b")
+    until = time.monotonic() + limit
+    while True:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return file
+        except BlockingIOError:
+            if time.monotonic() > until:
+                file.close()
+                raise RunError(f"{path} is held by another run that starts its roscore for more"
+                               f" than {limit:.0f} s: end it, then run this again") from None
+            time.sleep(TURN_PERIOD)
+
+
+USUAL_PORT = 11311
+USUAL = f"http://localhost:{USUAL_PORT}"  # what sourcing devel/setup.bash sets
+CALLERS = "CALLERS_ROS_MASTER_URI"  # set by scripts/common.sh, which clears ROS_MASTER_URI
+ELSEWHERE = ("ROS_MASTER_URI=%s is not used: this command starts a ROS master of its own, on this "
+             "machine")
+TAKEN = ("ROS_MASTER_URI=%s is not used: something listens there already, and this command starts "
+         "a ROS master of its own")
+
+
+def named_by_caller() -> str:
+    """The URI of the master that the caller has chosen; "" for the usual one."""
+    uri = os.environ.get(CALLERS, os.environ.get("ROS_MASTER_URI", "")).rstrip("/")
+    return "" if uri == USUAL else uri
+
+
+def own_port() -> tuple[int, tuple[str, ...]]:
+    """A free port for a new master: the caller's, if that is possible, else another.
+
+    Then also why: a format string and its argument.
+    """
+    uri = named_by_caller()
+    if not uri:
+        return free_port(), ()
+    try:
+        place = urlsplit(uri)
+        host, port = place.hostname or "", place.port or USUAL_PORT
+    except ValueError:  # not a URI
+        return free_port(), (ELSEWHERE, uri)
+    if not is_local_address(host):
+        return free_port(), (ELSEWHERE, uri)
+    found = free_port(port)
+    return (found, ()) if found == port else (free_port(), (TAKEN, uri))
+
+
+def master_to_join() -> str:
+    """URI of the usual master: a running one of this user, or one to be started; else a free one.
+
+    It is another user's, or another program has its port: then another port is chosen.
+    """
+    ours = listens_here(USUAL_PORT) and is_up(USUAL)
+    return USUAL if ours else f"http://localhost:{free_port()}"
+
+
+def free_port(wished: int = USUAL_PORT) -> int:
+    """This port if it is free, else another."""
+    with socket.socket() as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind(("", wished))
+        except OSError:
+            probe.bind(("", 0))
+        return probe.getsockname()[1]
+
+
+def is_up(master_uri: str) -> bool:
+    """Whether roscore has set /run_id; if roslaunch starts earlier and sets it, roscore exits."""
+    try:
+        master = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport())
+        code, _, named = master.hasParam("/course_run", "/run_id")
+    except (OSError, xmlrpc.client.Error, HTTPException, ExpatError, TypeError, ValueError):
+        return False  # nothing, or another program
+    return code == 1 and named
+
+
+def listens_here(port: int) -> bool:
+    """Whether a process of this user, on this machine, listens at the port."""
+    for one in psutil.net_connections("tcp"):
+        if one.status == psutil.CONN_LISTEN and one.laddr.port == port and one.pid:
+            with contextlib.suppress(psutil.Error):
+                return psutil.Process(one.pid).uids().real == os.getuid()
+    return False
+
+
+if __name__ == "__main__":
+    print(master_to_join())
