@@ -29,6 +29,9 @@ if [ -d "$repository" ]; then
 fi
 mkdir -p out 2>/dev/null || true
 [ -w out ] || fail "out/ belongs to $(stat -c 'user %u' out), not to you; type: sudo chown -R $(id -u):$(id -g) out"
+# The build is the image's, the source the host's, where git ignores what a build makes of it.
+models=src/sim/bullet_sim/src/bullet_sim/props.py
+[ ! -f "$models" ] || python3 "$models" || fail "user $(id -u) cannot write in src/sim/bullet_sim"
 set +u
 . devel/setup.bash
 exec "$@"

@@ -1,6 +1,7 @@
 """What the verbs share: scripts/common.sh."""
 
 import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -72,7 +73,6 @@ def test_mending_apt_removes_no_package() -> None:
 def test_a_file_that_root_left_behind_stops_no_build(tmp_path: Path) -> None:
     (tmp_path / "devel").mkdir()
     (tmp_path / "devel/setup.bash").touch()
-    (tmp_path / "src/sim/bullet_sim/src/bullet_sim/data/models").mkdir(parents=True)
     (tmp_path / "build-inputs").write_text("inputs\n")
     (tmp_path / "build-inputs.now").symlink_to("/nowhere/x")  # cannot be written either
     done = subprocess.run(
@@ -81,6 +81,24 @@ def test_a_file_that_root_left_behind_stops_no_build(tmp_path: Path) -> None:
          f" root={tmp_path} state={tmp_path}; build_workspace"],
         cwd=ROOT, text=True, capture_output=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_setup_makes_the_models_where_nothing_is_to_be_built(tmp_path: Path) -> None:
+    package = tmp_path / "src/sim/bullet_sim/src/bullet_sim"
+    shutil.copytree(ROOT / package.relative_to(tmp_path) / "data/props", package / "data/props")
+    shutil.copy(ROOT / package.relative_to(tmp_path) / "props.py", package)
+    (tmp_path / "devel").mkdir()
+    (tmp_path / "devel/setup.bash").touch()
+    (tmp_path / "scripts").mkdir()
+    (tmp_path / "scripts/own_packages.py").touch()
+    (tmp_path / "build-inputs").write_text("inputs\n")
+    done = subprocess.run(
+        ["bash", "-c", ". scripts/common.sh; . scripts/setup/workspace.sh; "
+         " build_inputs() { echo inputs; }; cpp=OFF force_build=no;"
+         f" root={tmp_path} state={tmp_path}; build_workspace"],
+        cwd=ROOT, text=True, capture_output=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    assert (package / "data/models/sun/model.sdf").is_file()
 
 
 def test_a_program_in_cpp_that_is_not_built_says_how(tmp_path: Path) -> None:
@@ -131,8 +149,7 @@ def test_a_method_that_is_not_there_is_one_line():
     assert len(done.stderr.splitlines()) == 1
 
 
-def test_a_changed_model_needs_a_build_and_what_pip_leaves_in_a_package_none(
-        tmp_path: Path) -> None:
+def test_what_pip_leaves_in_a_package_needs_no_build(tmp_path: Path) -> None:
     def inputs():
         script = f"root={tmp_path}; . {ROOT}/scripts/setup/workspace.sh; build_inputs"
         return subprocess.run(["bash", "-c", script], text=True, capture_output=True,
@@ -146,9 +163,6 @@ def test_a_changed_model_needs_a_build_and_what_pip_leaves_in_a_package_none(
     for name in ("package.xml", "__init__.py"):
         (tmp_path / "src/car/build/lib/car" / name).touch()
     assert inputs() == before
-    (tmp_path / "src/bullet_sim/data/props").mkdir(parents=True)
-    (tmp_path / "src/bullet_sim/data/props/street.toml").touch()
-    assert "street.toml" in inputs()
 
 
 @pytest.mark.parametrize(("stays", "who"), [("yes", "root"), ("", "person")])

@@ -1,7 +1,8 @@
 """Writes data/models, which is not committed, from data/props: plain bodies of one link.
 
-CMakeLists.txt runs it, setup.py for pip, and conftest.py for the tests. It imports nothing but the
-standard library, since pip runs it before anything is installed.
+CMakeLists.txt and scripts/setup.sh run it, setup.py for pip, docker/entrypoint.sh for a container
+over the host's source, and conftest.py for the tests. It imports nothing but the standard library,
+since pip runs it before anything is installed.
 
 A table of data/props/*.toml is a model. Its keys (SI units):
   name        the model's name if it is not that of the folder
