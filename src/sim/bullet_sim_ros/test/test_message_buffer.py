@@ -11,9 +11,7 @@ from rospy.msg import serialize_message
 from std_msgs.msg import String
 
 from bullet_sim_ros.array_messages import ArrayImage, ArrayPointCloud2
-from bullet_sim_ros.message_buffer import MessageBuffer
-from bullet_sim_ros.prompt_connection import PromptConnection
-from bullet_sim_ros.rospy_patches import send_promptly
+from bullet_sim_ros.rospy_patches import MessageBuffer, PromptConnection, send_promptly
 
 PIXELS = np.arange(45, dtype=np.uint8).reshape(3, 5, 3)
 POINTS = np.arange(60, dtype=np.float32).reshape(3, 5, 4)

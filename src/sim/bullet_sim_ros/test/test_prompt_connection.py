@@ -10,7 +10,7 @@ import pytest
 from rospy.exceptions import TransportTerminated
 from rospy.impl.tcpros_base import TCPROSTransport, TCPROSTransportProtocol
 
-from bullet_sim_ros.prompt_connection import PromptConnection
+from bullet_sim_ros.rospy_patches import PromptConnection
 
 LIMIT = 60.0  # s
 

@@ -12,7 +12,7 @@ from io import BytesIO
 import numpy as np
 from sensor_msgs.msg import Image, PointCloud2, PointField
 
-from bullet_sim_ros.message_buffer import write_array
+from bullet_sim_ros.rospy_patches import write_array
 
 
 class ArrayImage(Image):

@@ -3,9 +3,8 @@
 import logging
 
 from bullet_sim_ros import params
-from bullet_sim_ros.cameras.camera_group import CameraGroup
-from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
-from bullet_sim_ros.cameras.depth_camera_publisher import FARTHEST, DepthCameraPublisher
+from bullet_sim_ros.cameras.camera_stream import CameraStream
+from bullet_sim_ros.cameras.camera_topics import FARTHEST, CameraTopics, DepthCameraTopics
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, plugin
 
@@ -20,7 +19,7 @@ class CameraPlugin:
     """Also for sensors of type wideanglecamera."""
 
     def __init__(self, context: PluginContext):
-        _capture_at_rate(context, [CameraPublisher(context)])
+        _capture_at_rate(context, [CameraTopics(context)])
 
 
 @plugin("libgazebo_ros_triggered_camera.so")
@@ -28,7 +27,7 @@ class TriggeredCameraPlugin:
     """One image for each message on `triggerTopicName`."""
 
     def __init__(self, context: PluginContext):
-        CameraGroup(context, [CameraPublisher(context)]).capture_on_trigger()
+        CameraStream(context, [CameraTopics(context)]).capture_on_trigger()
 
 
 @plugin("libgazebo_ros_multicamera.so")
@@ -44,7 +43,7 @@ class TriggeredMulticameraPlugin:
     """Each camera has a trigger topic; a message on either triggers both cameras."""
 
     def __init__(self, context: PluginContext):
-        CameraGroup(context, _pair(context)).capture_on_trigger()
+        CameraStream(context, _pair(context)).capture_on_trigger()
 
 
 @plugin("libgazebo_ros_prosilica.so")
@@ -55,7 +54,7 @@ class ProsilicaPlugin:
     """
 
     def __init__(self, context: PluginContext):
-        camera = CameraPublisher(context)
+        camera = CameraTopics(context)
         name = params.find_upwards(camera.settings.namespace, "trigger_mode")
         mode = str(params.below(name)) if name else STREAMING
         if mode == POLLED:
@@ -88,26 +87,26 @@ class DepthCameraPlugin:
         _capture_depth(context, FARTHEST)
 
 
-def _capture_at_rate(context: PluginContext, cameras: list[CameraPublisher]) -> None:
-    CameraGroup(context, cameras).capture_at_rate(context.sensor.update_rate,
+def _capture_at_rate(context: PluginContext, cameras: list[CameraTopics]) -> None:
+    CameraStream(context, cameras).capture_at_rate(context.sensor.update_rate,
                                                   cameras[0].settings.rate_hz)
 
 
 def _capture_depth(context: PluginContext, far: float) -> None:
     """The plugin's rate counts only where the sensor has none."""
-    camera = DepthCameraPublisher(context, far)
-    CameraGroup(context, [camera]).capture_at_rate(
+    camera = DepthCameraTopics(context, far)
+    CameraStream(context, [camera]).capture_at_rate(
         context.sensor.update_rate or camera.settings.rate_hz)
 
 
-def _pair(context: PluginContext) -> list[CameraPublisher]:
+def _pair(context: PluginContext) -> list[CameraTopics]:
     """The cameras with `left` or `right` in their names; only the right one has a baseline."""
     cameras = []
     for number, camera in enumerate(context.sensor.cameras):
         if "left" in camera.name:
-            cameras.append(CameraPublisher(context, number, "/left", 0.0))
+            cameras.append(CameraTopics(context, number, "/left", 0.0))
         elif "right" in camera.name:
-            cameras.append(CameraPublisher(context, number, "/right",
+            cameras.append(CameraTopics(context, number, "/right",
                                            context.parameters.number("hackBaseline", 0.0)))
         else:
             log.warning("%s: camera %r is left out: its name has neither left nor right in it",

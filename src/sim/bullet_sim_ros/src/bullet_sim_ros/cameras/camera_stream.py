@@ -1,4 +1,4 @@
-"""The cameras of a sensor, which capture their images together, at a rate or on a trigger."""
+"""The images of a sensor: captured in the loop, rendered and published in the drawing thread."""
 
 import logging
 import math
@@ -7,8 +7,7 @@ from concurrent.futures import Future
 
 from std_msgs.msg import Empty
 
-from bullet_sim_ros.cameras.camera_publisher import CameraPublisher
-from bullet_sim_ros.cameras.settings import CameraSettings
+from bullet_sim_ros.cameras.camera_topics import CameraSettings, CameraTopics, Wanted
 from bullet_sim_ros.plugin_host import PluginContext
 from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
@@ -18,15 +17,17 @@ DEFAULT_RATE = 30.0  # Hz, where neither sensor nor plugin names one (Gazebo: as
 SLOWEST, FASTEST, FIRST_RATE = 1.0, 50.0, 2.0  # Hz; imager_rate of cfg/GazeboRosCamera.cfg
 
 
-class CameraGroup:
-    """A subscriber to the images of one camera has all of them rendered.
+class CameraStream:
+    """The cameras of a sensor, which capture together, at a rate or on a trigger.
 
-    So does gazebo_ros_camera_utils.cpp, ImageConnect, but it also renders for camera_info alone.
+    A subscriber to the images of one has all of them rendered. So does gazebo_ros_camera_utils.cpp,
+    ImageConnect, but it also renders for camera_info alone.
     """
 
-    def __init__(self, context: PluginContext, cameras: Sequence[CameraPublisher]):
+    def __init__(self, context: PluginContext, cameras: Sequence[CameraTopics]):
         self._context = context
         self._cameras = cameras
+        self._subscribed: list[Wanted] = []  # of each camera, when this was last looked up
         self._triggered = False
         self._drawn: Future | None = None  # the last capture's job
         context.on_close(self._close)
@@ -59,18 +60,20 @@ class CameraGroup:
             self._capture()
 
     def _wanted(self) -> bool:
-        return any(camera.wanted() for camera in self._cameras)
+        self._subscribed = [camera.subscribed() for camera in self._cameras]
+        return any(each.captures for each in self._subscribed)
 
     def _capture(self) -> None:
-        """Runs in the loop; the drawing thread renders and publishes the images."""
-        pictures = any(camera.pictures_wanted() for camera in self._cameras)
-        if pictures:
+        """Runs in the loop, after `_wanted`; the rest is done in the drawing thread."""
+        wanted = self._subscribed
+        if any(each.pictures for each in wanted):
             self._context.host.lockstep.expect(self._context)
+            wanted = [each._replace(image=True) for each in wanted]
         states = [camera.camera.capture() for camera in self._cameras]
 
         def publish() -> None:
-            for camera, state in zip(self._cameras, states, strict=True):
-                camera.publish(state, pictures)
+            for camera, state, messages in zip(self._cameras, states, wanted, strict=True):
+                camera.publish(state, messages)
 
         self._draw(publish)
 
