@@ -37,7 +37,7 @@ class SleepTrial(ReportedTrial):
         parser.add_whole("--enough", 0, "results that are enough; 0: all", variable="")
 
     def check(self, options):
-        self.options, self.open_ended = options, bool(options.enough)
+        self.open_ended = bool(options.enough)
 
     def cases(self, options):
         return [Case(f"nap-{number}") for number in range(options.naps)]
@@ -45,24 +45,18 @@ class SleepTrial(ReportedTrial):
     def is_needed(self, case, results):
         return not self.options.enough or len(results) < self.options.enough
 
-    def setup(self, session, case):
-        self.case, self.out = case, session.out
-        self.child = session.family.start(
+    def drive(self, session, case):
+        child = session.family.start(
             "sleep", ["sleep", f"{self.options.seconds + 60}"], os.environ, session.out / "log")
-
-    def run(self):
-        note = self.out / "naps" / self.case.name
+        note = session.out / "naps" / case.name
         note.parent.mkdir(exist_ok=True)
-        note.write_text(f"{self.child.process.pid}\n")
-        if self.case.name == self.options.fails:
-            raise RunError(f"the bed broke; log: {self.out / 'log'}", "a creak")
-        if self.case.name == self.options.dies:
+        note.write_text(f"{child.process.pid}\n")
+        if case.name == self.options.fails:
+            raise RunError(f"the bed broke; log: {session.out / 'log'}", "a creak")
+        if case.name == self.options.dies:
             os.kill(os.getpid(), signal.SIGKILL)
         time.sleep(self.options.seconds)
-        return sum(path.is_file() for path in note.parent.iterdir())
-
-    def score(self, record):
-        return Nap(self.case.name, record)
+        return Nap(case.name, sum(path.is_file() for path in note.parent.iterdir()))
 
     def passed(self, results):
         return bool(results)

@@ -211,14 +211,11 @@ def with_people(seed, encounters):
     ((1, 1), 0, 2), ((2, 9), 0, 1), ((0, 1), 2, 2)])
 def test_it_drives_until_enough_people_were_met(tmp_path, capsys, met, code, driven):
     class Driven(LaneTrial):
-        def setup(self, _session, case):
-            self._case = case
+        def drive(self, _session, case):
+            return case
 
-        def run(self):
-            return met[self._case.seed - 500]
-
-        def score(self, record):
-            return with_people(self._case.seed, record)
+        def judge(self, record):
+            return with_people(record.seed, met[record.seed - 500])
 
     arguments = ["--seeds", "0", "--crossings", "2", "--out", str(tmp_path)]
     assert run_trial(Driven(), arguments) == code

@@ -118,18 +118,15 @@ def trials(tmp_path, monkeypatch, laps, *options: str) -> int:
     given = iter(laps)
 
     class Driven(RaceTrial):
-        def setup(self, _session, case):
-            self._case = case
-
-        def run(self):
+        def drive(self, _session, case):
             found = next(given)
             if isinstance(found, BaseException):
                 raise found
-            return found
+            return case, found
 
-        def score(self, record):
-            case = self._case
-            return replace(record, set=case.set, seed=case.seed, follower=case.follower,
+        def judge(self, record):
+            case, found = record
+            return replace(found, set=case.set, seed=case.seed, follower=case.follower,
                            disturbance=draw(case.seed, RACE))
 
     return run_trial(Driven(), ["--tracks", "0", "--out", str(tmp_path / "out"), *options])

@@ -16,7 +16,6 @@ from evaluation import race_trials as trial_module
 from evaluation.course_run import CourseRun
 from evaluation.lap import RACE, Disturbance, draw
 from evaluation.race_trials import Lap, racetrack, random_track
-from evaluation.trial import try_case
 from run_session.failure import RunError
 from run_session.session import Session
 
@@ -95,7 +94,8 @@ def drive(out: Path, follower: str = "lane_follow.py") -> Lap:
     """One lap on the racetrack, of seed 4."""
     case = trial_module.RaceCase(f"{follower} racetrack 4", "racetrack", 4, follower)
     with Session(out) as session:
-        return try_case(trial_module.RaceTrial(), session, case)
+        trial = trial_module.RaceTrial()
+        return trial.judge(trial.drive(session, case))
 
 
 REPORT = {

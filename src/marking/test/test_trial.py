@@ -49,8 +49,7 @@ def marking(tmp_path):
 def mark(marking, session):
     trial, options = marking
     [case] = trial.cases(options)
-    trial.setup(session, case)
-    return trial.score(trial.run())
+    return trial.judge(trial.drive(session, case))
 
 
 def test_what_answers_each_image_drives_once(marking, capsys):

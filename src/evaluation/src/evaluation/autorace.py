@@ -139,6 +139,16 @@ class RaceCase(Case):
 
 
 @dataclass(frozen=True)
+class Record:
+    """What happened in one drive."""
+
+    case: RaceCase
+    light: float  # factor on the world's own light
+    samples: list[Sample]
+    touched: dict[str, float]  # models, with the time of first contact, s
+
+
+@dataclass(frozen=True)
 class DriveResult:
     """The result of one drive."""
 
@@ -172,9 +182,6 @@ class RaceTrial(ReportedTrial):
     writes = "report.json, report.html, autorace.png and the simulator's logs"
     result, derived = DriveResult, ("passed",)
 
-    def __init__(self) -> None:
-        self._rig: AutoraceStack | None = None
-
     def add_options(self, parser: Parser) -> None:
         parser.add_whole("--seeds", 10, "drives", least=1)
         parser.add_whole("--first-seed", 0, "seed of the first of them")
@@ -188,42 +195,29 @@ class RaceTrial(ReportedTrial):
         seeds = range(options.first_seed, options.first_seed + options.seeds)
         return [RaceCase(f"{options.mission}-{seed}", options.mission, seed) for seed in seeds]
 
-    def setup(self, session: Session, case: RaceCase) -> None:
-        if self._rig is None:
-            self._rig = AutoraceStack(session.launched("robot"))
-        self._case, self._task = case, TASKS[case.mission]
-        draw = random.Random(case.seed)
-        self._light = round(draw.uniform(0.6, 1.0), 2)
+    def drive(self, session: Session, case: RaceCase) -> Record:
+        stack = session.once(lambda: AutoraceStack(session.launched("robot")))
+        task, draw = TASKS[case.mission], random.Random(case.seed)
+        light = round(draw.uniform(0.6, 1.0), 2)
         x, y, yaw = (value + draw.uniform(-wide, wide) for value, wide in
-                     zip(self._task.start, (0.03, 0.03, 0.08), strict=True))
+                     zip(task.start, (0.03, 0.03, 0.08), strict=True))
         folder, package = session.out / "drives", find_package("turtlebot3_gazebo")
         world = write_lit_world(package / "worlds" / "turtlebot3_autorace_2020.world",
-                                package / "models", self._light, folder / case.name)
-        self._rig.begin(self._task.script, [
+                                package / "models", light, folder / case.name)
+        stack.begin(task.script, [
             f"world_name:={world}", f"x_pos:={x:.4f}", f"y_pos:={y:.4f}", f"yaw:={yaw:.4f}",
             f"seed:={case.seed}"], folder / f"{case.name}.log")
+        _watch(stack, task)
+        touched = stack.end()
+        return Record(case, light, list(stack.samples), touched)
 
-    def run(self) -> tuple[list[Sample], dict[str, float]]:
-        """The samples, and the touched models with the time of first contact, s."""
-        stood_at = now = self._rig.watch()
-        begin = now.time
-        while now.time < begin + self._task.limit:
-            now = self._rig.watch()
-            if abs(now.x - stood_at.x) + abs(now.y - stood_at.y) > 0.05:
-                stood_at = now
-            (last,) = score(self._rig.samples, {}, self._task.missions[-1:])
-            if (last.passed or off_lane(now.x, now.y) > LOST
-                    or now.time - stood_at.time > STALLED):
-                break
-        touched = self._rig.end()
-        return list(self._rig.samples), touched
-
-    def score(self, record: tuple[list[Sample], dict[str, float]]) -> DriveResult:
-        samples, touched = record
+    def judge(self, record: Record) -> DriveResult:
+        case, samples = record.case, record.samples
         path = [(round(each.x, 3), round(each.y, 3)) for each in samples[::4]]
-        return DriveResult(self._case.name, self._case.mission, self._case.seed, self._light,
-                     round(samples[-1].time - samples[0].time, 1),
-                     tuple(score(samples, touched, self._task.missions)), path)
+        return DriveResult(
+            case.name, case.mission, case.seed, record.light,
+            round(samples[-1].time - samples[0].time, 1),
+            tuple(score(samples, record.touched, TASKS[case.mission].missions)), path)
 
     def table(self, results: Sequence[DriveResult]) -> str:
         rows = [("mission", "passed", "after s", "contacts", "why not")]
@@ -244,6 +238,19 @@ class RaceTrial(ReportedTrial):
     def pictures(self, results: Sequence[DriveResult], out: Path) -> list[str]:
         write_sheet(results, out / "autorace.png")
         return ["autorace.png"]
+
+
+def _watch(stack: AutoraceStack, task: Task) -> None:
+    """Returns when the last mission was passed, the robot is lost, or time is up."""
+    stood_at = now = stack.watch()
+    begin = now.time
+    while now.time < begin + task.limit:
+        now = stack.watch()
+        if abs(now.x - stood_at.x) + abs(now.y - stood_at.y) > 0.05:
+            stood_at = now
+        (last,) = score(stack.samples, {}, task.missions[-1:])
+        if last.passed or off_lane(now.x, now.y) > LOST or now.time - stood_at.time > STALLED:
+            break
 
 
 def write_sheet(drives: Sequence, path: Path) -> None:

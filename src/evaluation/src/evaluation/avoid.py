@@ -82,30 +82,28 @@ class AvoidTrial(ReportedTrial):
 
     def check(self, options: argparse.Namespace) -> None:
         scripts = (find_package("learning_laser") / "scripts").glob("*.py")
-        self._avoider = one_of("avoider", "--avoider", sorted(each.name for each in scripts),
-                               options.avoider)
+        one_of("avoider", "--avoider", sorted(each.name for each in scripts), options.avoider)
 
     def cases(self, options: argparse.Namespace) -> list[Hall]:
         first = options.first_seed
         return [Hall(f"hall-{seed}", seed) for seed in range(first, first + options.seeds)]
 
-    def setup(self, session: Session, case: Hall) -> None:
+    def drive(self, session: Session, case: Hall) -> tuple[Hall, list[dict]]:
+        """The case, and the simulator's states up to the drive's end."""
         folder = session.out / "halls"
         folder.mkdir(exist_ok=True)
-        world, self._log = folder / f"{case.name}.world", folder / f"{case.name}.jsonl"
+        world, log = folder / f"{case.name}.world", folder / f"{case.name}.jsonl"
         world.write_text(hall.world(case.seed), encoding="utf-8")
-        self._case, self._session = case, session
-        self._launched = session.launched("robot", self._avoider)
-        bring_up(self._launched, world, case.seed, self._avoider, self._log)
-
-    def run(self) -> list[dict]:
+        launched = session.launched("robot", self.options.avoider)
+        bring_up(launched, world, case.seed, self.options.avoider, log)
         try:
-            return watch(self._launched, self._log)
+            return case, watch(launched, log)
         finally:
-            self._session.family.stop()
+            session.family.stop()
 
-    def score(self, record: list[dict]) -> DriveResult:
-        return scored(self._case.name, self._case.seed, record)
+    def judge(self, record: tuple[Hall, list[dict]]) -> DriveResult:
+        case, states = record
+        return scored(case.name, case.seed, states)
 
     def table(self, results: Sequence[DriveResult]) -> str:
         count = Counter(each.outcome for each in results)

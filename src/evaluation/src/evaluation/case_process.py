@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from evaluation.command_line import PASSED, run_program
-from evaluation.trial import Case, Trial, try_case
+from evaluation.trial import Case, Trial
 from run_session.session import Session
 
 ORDER, RESULT, OUT = "case", "result", "out"
@@ -38,7 +38,7 @@ def _run(order: Order, folder: Path) -> int:
     options = trial.parse([*order.arguments, "--out", str(folder / OUT)])
     options.out.mkdir()
     with Session(options.out) as session:
-        result = try_case(trial, session, order.case)
+        result = trial.judge(trial.drive(session, order.case))
     (folder / RESULT).write_bytes(pickle.dumps(result))
     return PASSED
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 
 from lane_keeping.settings import SettingsError
@@ -23,7 +24,17 @@ from evaluation.lane_encounters import (
     read_recording,
 )
 from evaluation.lap import Bounds, Disturbance, draw
-from evaluation.lap_trial import COUNTS, FIGURES, LapDrive, LapTrial, Outing, Venue, seen, summary
+from evaluation.lap_trial import (
+    COUNTS,
+    FIGURES,
+    LapDrive,
+    LapRecord,
+    LapTrial,
+    Outing,
+    Venue,
+    seen,
+    summary,
+)
 from evaluation.picture import chart
 from evaluation.report import cell, grouped, table, table_of
 from evaluation.trial import REPORT, Case
@@ -153,13 +164,13 @@ class LaneDrives(LapTrial):
         return Outing(f"{case.method}, seed {case.seed}", course, f"{case.method}.py", venue, lit,
                       folder, draw(case.seed, BOUNDS), LONGEST_LAP, case.laps, options, record)
 
-    def score(self, record: dict) -> LaneDrive:
-        case = self._case
-        found = from_report(record, case.method, case.seed, self._outing.disturbance, case.people)
+    def judge(self, record: LapRecord) -> LaneDrive:
+        case, outing = record.case, record.outing
+        found = from_report(record.report, case.method, case.seed, outing.disturbance, case.people)
         if not case.people:
             return found
-        recording = read_recording(self._outing.out / "poses.txt")
-        lane_half = load_track_file(self._outing.venue.track).lane_width
+        recording = read_recording(outing.out / "poses.txt")
+        lane_half = load_track_file(outing.venue.track).lane_width
         try:
             met = judge(recording, load_crossings(), lane_half)
         except SettingsError as error:
@@ -191,7 +202,6 @@ class LaneTrial(LaneDrives):
         one_of("method", "METHOD", known_methods(), options.method)
         if not options.seeds and not options.crossings:
             raise RunError("--seeds 0 --crossings 0: nothing to drive")
-        self._crossings = options.crossings
 
     def cases(self, options: argparse.Namespace) -> list[LaneCase]:
         """Includes at most as many drives with people as encounters are wanted."""
@@ -200,11 +210,11 @@ class LaneTrial(LaneDrives):
                   for number in range(options.crossings))]
 
     def is_needed(self, case: LaneCase, results: Sequence[LaneDrive]) -> bool:
-        return not case.people or count_met(results) < self._crossings
+        return not case.people or count_met(results) < self.options.crossings
 
     def passed(self, results: Sequence[LaneDrive]) -> bool:
-        if count_met(results) < self._crossings:
-            raise RunError(f"fewer than {self._crossings} people were met in as many drives")
+        if count_met(results) < self.options.crossings:
+            raise RunError(f"fewer than {self.options.crossings} people were met in as many drives")
         with_people = [each for each in results if each.people]
         return (all(each.within_limits for each in results if not each.people)
                 and all(each.closed and each.kept_clear for each in with_people)
@@ -235,6 +245,11 @@ def known_methods() -> list[str]:
 COLOUR, FAILED, LIMIT = "#1b6ca8", "#c0392b", "#7a8b99"
 
 
+@cache
+def _measured(method: str) -> float:
+    return round(ms_a_frame(method), 2)
+
+
 class LaneComparison(LaneDrives):
     """Compares methods; a method that fails is a result, not a failure of the program."""
 
@@ -253,7 +268,6 @@ class LaneComparison(LaneDrives):
             one_of("method", "METHOD", known_methods(), method)
         if not options.seeds:
             raise RunError("--seeds 0: nothing to drive")
-        self._methods, self._times = options.methods, {}
 
     def cases(self, options: argparse.Namespace) -> list[LaneCase]:
         return [lane_case(method, seed)
@@ -275,11 +289,8 @@ class LaneComparison(LaneDrives):
         return ["lanes.png"]
 
     def _ms_a_frame(self) -> dict[str, float]:
-        """CPU time per image of each method, ms; measured once."""
-        for method in self._methods:
-            if method not in self._times:
-                self._times[method] = round(ms_a_frame(method), 2)
-        return self._times
+        """CPU time per image of each method, ms."""
+        return {method: _measured(method) for method in self.options.methods}
 
 
 def write_chart(drives: Sequence[LaneDrive], times: Mapping[str, float], path: Path) -> None:

@@ -14,7 +14,7 @@ from racecar_description.track.closed_line import load_track
 
 from evaluation.lap import Disturbance
 from evaluation.report import cell, mean
-from evaluation.trial import Case, ReportedTrial
+from evaluation.trial import ReportedTrial
 from run_session.files import find_package
 from run_session.session import Session
 from trial_worlds.light import write_lit_world
@@ -91,6 +91,15 @@ class LapDrive:
                 and self.mean_speed >= self.least_speed)
 
 
+@dataclass(frozen=True)
+class LapRecord:
+    """One drive as it was asked for, and course_run's report of it."""
+
+    case: Any
+    outing: Outing
+    report: dict
+
+
 class LapTrial(ReportedTrial):
     """Sets up and runs the drives; subclasses judge them."""
 
@@ -101,20 +110,17 @@ class LapTrial(ReportedTrial):
     def outing(self, out: Path, case: Any) -> Outing:
         """The case's drive; folders lie below `out`."""
 
-    def setup(self, session: Session, case: Case) -> None:
-        self._case, outing = case, self.outing(session.out, case)
-        self._outing, models = outing, outing.venue.models
+    def drive(self, session: Session, case: Any) -> LapRecord:
+        outing = self.outing(session.out, case)
+        models = outing.venue.models
         world = write_lit_world(outing.venue.world, models, outing.disturbance.light, outing.lit)
         script = find_package("evaluation") / "scripts" / "course_run.py"
         folders = filter(None, (outing.lit / "models", models, os.environ.get(MODEL_PATH)))
-        self._drive = session.start_drive(
+        process = session.start_drive(
             [sys.executable, "-P", str(script), *outing.arguments(case.seed, world),
              "--out", str(outing.out)],
             outing.out, {**os.environ, MODEL_PATH: ":".join(map(str, folders))})
-
-    def run(self) -> dict:
-        """Returns course_run's report."""
-        return self._drive.report(LAP_LIMIT * self._outing.laps, self._outing.what)
+        return LapRecord(case, outing, process.report(LAP_LIMIT * outing.laps, outing.what))
 
     def values(self, results: Sequence[LapDrive], **more: object) -> dict:
         """All results, with the limits by which they are judged."""

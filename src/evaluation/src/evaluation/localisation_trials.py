@@ -54,9 +54,6 @@ class LocalisationTrial(ReportedTrial):
     writes = "report.json, report.html, the map and log/"
     shared = "seed", "house", "wheel_odometry", "tracking", "load"
 
-    def __init__(self) -> None:
-        self._rig: LocalisationStack | None = None
-
     def add_options(self, parser: Parser) -> None:
         parser.add_whole("--starts", 20, "robots to find anywhere in the house")
         parser.add_whole("--kidnaps", 10, "robots to find that were carried away")
@@ -76,7 +73,7 @@ class LocalisationTrial(ReportedTrial):
         if not (options.starts or options.kidnaps or options.tracking or options.load):
             raise RunError("no starts, no kidnaps, no tracking and no load: nothing to try")
         options.house = load_house(options.house)
-        self._options, self._ground = options, options.house.ground()
+        options.ground = options.house.ground()
 
     def cases(self, options: argparse.Namespace) -> list[LocalisationCase]:
         found = [LocalisationCase(f"{kind}-{number}", kind, number)
@@ -85,16 +82,13 @@ class LocalisationTrial(ReportedTrial):
         return found + [LocalisationCase(kind, kind, seconds) for kind, seconds in (
             ("tracking", options.tracking), ("load", options.load)) if seconds]
 
-    def setup(self, session: Session, case: LocalisationCase) -> None:
-        self._case = case
-        if self._rig is None:
-            self._rig = self._bring_up(session)
-        to_be_found = case.kind in (FINDING, KIDNAPS)
-        self._rig.use_odometry(by_wheels=to_be_found or self._options.wheel_odometry)
-
-    def run(self) -> Result:
+    def drive(self, session: Session, case: LocalisationCase) -> Result:
         """The result of the case, by its kind."""
-        return RUNS[self._case.kind](self._rig, self._ground, self._options.seed, self._case.amount)
+        options = self.options
+        stack = session.once(lambda: _bring_up(session, options))
+        to_be_found = case.kind in (FINDING, KIDNAPS)
+        stack.use_odometry(by_wheels=to_be_found or options.wheel_odometry)
+        return RUNS[case.kind](stack, options.ground, options.seed, case.amount)
 
     def passed(self, results: Sequence[Result]) -> bool:
         """Whether all results are within the limits."""
@@ -125,15 +119,16 @@ class LocalisationTrial(ReportedTrial):
         return found + [from_json(kind, values[kind.name]) for kind in (Tracking, Load)
                         if values[kind.name]]
 
-    def _bring_up(self, session: Session) -> LocalisationStack:
-        try:
-            _, map_file = write_map(session.out / "map", self._ground.walls)
-        except (OSError, MapFileError) as error:
-            raise RunError(f"--out {session.out}: {getattr(error, 'strerror', error)}") from error
-        rig = LocalisationStack(self._options, self._ground, session.launched("robot"),
-                                str(map_file), session.progress)
-        session.at_end(rig.watch.stop)
-        return rig
+
+def _bring_up(session: Session, options: argparse.Namespace) -> LocalisationStack:
+    try:
+        _, map_file = write_map(session.out / "map", options.ground.walls)
+    except (OSError, MapFileError) as error:
+        raise RunError(f"--out {session.out}: {getattr(error, 'strerror', error)}") from error
+    stack = LocalisationStack(options, options.ground, session.launched("robot"), str(map_file),
+                              session.progress)
+    session.at_end(stack.watch.stop)
+    return stack
 
 
 def _sets(results: Sequence[Result]) -> dict[str, list[Trial]]:

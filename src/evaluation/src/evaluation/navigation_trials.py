@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -130,9 +129,6 @@ class YardTrial(ReportedTrial):
     writes = "report.json, report.html, pictures, worlds and drives"
     result, derived, shared = DriveResult, ("score",), ("parameters",)
 
-    def __init__(self) -> None:
-        self._rig: NavigationStack | None = None
-
     def add_options(self, parser: Parser) -> None:
         parser.add_whole("--yards", 50, "narrow worlds")
         parser.add_whole("--first-yard", 0, "seed of the first of them")
@@ -150,8 +146,6 @@ class YardTrial(ReportedTrial):
             options.parameters or find_package("evaluation") / PARAMETERS).resolve()
         if not options.parameters.is_file():
             raise RunError(f"--parameters {options.parameters}: no such file")
-        self._make_rig = partial(NavigationStack, real_time_factor=options.real_time_factor,
-                                 parameters=options.parameters)
 
     def cases(self, options: argparse.Namespace) -> list[YardCase]:
         yards = range(options.first_yard, options.first_yard + options.yards)
@@ -160,21 +154,19 @@ class YardTrial(ReportedTrial):
         trials += [(CROSSINGS, seed, 0) for seed in crossings]
         return [YardCase("-".join(map(str, each)), *each) for each in trials]
 
-    def setup(self, session: Session, case: YardCase) -> None:
-        if self._rig is None:
-            self._rig = self._make_rig(session.launched("robot"))
-        self._out, self._case, self._task = session.out, case, task_of(case)
+    def drive(self, session: Session, case: YardCase) -> DriveResult:
+        """The drive's result; its path is written below drives/."""
+        options, task = self.options, task_of(case)
+        stack = session.once(lambda: NavigationStack(
+            session.launched("robot"), options.real_time_factor, options.parameters))
         if case.set == YARDS:
             path = session.out / "worlds" / f"yard_{case.seed}.world"
             path.parent.mkdir(exist_ok=True)
             path.write_text(world(yard_model(draw_yard(case.seed))), encoding="utf-8")
-        prepare(self._rig, self._task)
-
-    def run(self) -> DriveResult:
-        """Run the drive; its path is written below drives/."""
-        judge = Judge(self._task.cylinders, RADIUS)
-        drove = drive_task(self._rig, self._task, judge)
-        path = self._out / "drives" / f"{self._case.name}.json"
+        prepare(stack, task)
+        judge = Judge(task.cylinders, RADIUS)
+        drove = drive_task(stack, task, judge)
+        path = session.out / "drives" / f"{case.name}.json"
         path.parent.mkdir(exist_ok=True)
         rounded = [[round(value, 4) for value in place] for place in judge.path]
         path.write_text(json.dumps(rounded) + "\n", encoding="utf-8")

@@ -16,7 +16,17 @@ from racecar_description.track.wishes import Wishes
 
 from evaluation.command_line import Parser
 from evaluation.lap import RACE, draw
-from evaluation.lap_trial import COUNTS, FIGURES, LapDrive, LapTrial, Outing, Venue, seen, summary
+from evaluation.lap_trial import (
+    COUNTS,
+    FIGURES,
+    LapDrive,
+    LapRecord,
+    LapTrial,
+    Outing,
+    Venue,
+    seen,
+    summary,
+)
 from evaluation.picture import chart, write_tiles
 from evaluation.report import grouped, table_of
 from evaluation.trial import Case
@@ -159,7 +169,6 @@ class RaceTrial(LapTrial):
     def check(self, options: argparse.Namespace) -> None:
         if not options.seeds and not options.tracks:
             raise RunError("--seeds 0 --tracks 0: nothing to drive")
-        self._first = options.followers[0]
 
     def cases(self, options: argparse.Namespace) -> list[RaceCase]:
         """The followers alternate."""
@@ -173,19 +182,20 @@ class RaceTrial(LapTrial):
         venue = (racetrack() if case.set == RACETRACK else
                  random_track(case.seed, out / "tracks"))
         name = venue.world.stem
-        self._out, folder = out, out / "laps" / f"{name}-{case.seed}"
+        folder = out / "laps" / f"{name}-{case.seed}"
         return Outing(f"{case.follower} on {name}, seed {case.seed}", "race", case.follower, venue,
                       folder, folder / Path(case.follower).stem, draw(case.seed, RACE), LONGEST_LAP)
 
-    def score(self, record: dict) -> Lap:
-        case, outing = self._case, self._outing
-        return Lap(**seen(record, case.seed, outing.disturbance), follower=record["follower"],
-                   set=case.set, track=outing.venue.world.stem,
-                   folder=str(outing.out.relative_to(self._out)),
-                   time=record["laps"][0]["time_s"] if record["laps"] else None)
+    def judge(self, record: LapRecord) -> Lap:
+        case, outing, report = record.case, record.outing, record.report
+        folder = Path(*outing.out.parts[-3:])  # laps/TRACK-SEED/FOLLOWER
+        return Lap(**seen(report, case.seed, outing.disturbance), follower=report["follower"],
+                   set=case.set, track=outing.venue.world.stem, folder=str(folder),
+                   time=report["laps"][0]["time_s"] if report["laps"] else None)
 
     def passed(self, results: Sequence[Lap]) -> bool:
-        return all(lap.within_limits for lap in results if lap.follower == self._first)
+        first = self.options.followers[0]
+        return all(lap.within_limits for lap in results if lap.follower == first)
 
     def table(self, results: Sequence[Lap]) -> str:
         return table_of(COLUMNS, summarize(results), left=(0, 1))

@@ -114,20 +114,19 @@ class TrackTrial(Trial):
         return [DriveResult(case.name, case.set, report) for case, report in found
                 if report["outcome"] != EARLY]
 
-    def setup(self, session: Session, case: TrackCase) -> None:
-        self._case, kind = case, SETS[case.set]
+    def drive(self, session: Session, case: TrackCase) -> tuple[TrackCase, dict]:
+        """The case, and the drive's report."""
+        kind = SETS[case.set]
         folder = session.out / case.name
-        self._drive = session.start_drive([
+        process = session.start_drive([
             sys.executable, "-P", str(find_package("evaluation") / "scripts" / "track.py"),
             "--scene", kind.scene, "--seed", str(case.seed), "--tracker", kind.tracker, "--fast",
             "--no-video", "--out", str(folder)], folder)
+        return case, process.report(LIMIT, f"{case.set}, seed {case.seed}")
 
-    def run(self) -> dict:
-        """Returns the drive's report."""
-        return self._drive.report(LIMIT, f"{self._case.set}, seed {self._case.seed}")
-
-    def score(self, record: dict) -> DriveResult:
-        return DriveResult(self._case.name, self._case.set, record)
+    def judge(self, record: tuple[TrackCase, dict]) -> DriveResult:
+        case, report = record
+        return DriveResult(case.name, case.set, report)
 
     def passed(self, results: Sequence[DriveResult]) -> bool:
         return all(each["passed"] for each in summarize(results))

@@ -32,12 +32,14 @@ class Case:
 
 
 class Trial(ABC):
-    """Cases that are set up, run and scored one by one; the runner does everything else.
+    """Cases that are driven and judged one by one; the runner does everything else.
 
-    A result is an object with the `name` of its case. `setup`, `run` and `score` of a case run
-    after one another in one process. Another process may run another case: it makes a trial of its
-    own from the same arguments (`parse`) and is given the case.
+    A result is an object with the `name` of its case. Besides its options a trial keeps nothing:
+    what one step finds, the next is given. So another process may run another case: it makes a
+    trial of its own from the same arguments (`parse`) and is given the case.
     """
+
+    options: argparse.Namespace  # as `parse` returned them
 
     package: ClassVar[str] = "evaluation"  # which contains the program
     program: ClassVar[str]
@@ -68,15 +70,14 @@ class Trial(ABC):
     # --- one case
 
     @abstractmethod
-    def setup(self, session: Session, case: Case) -> None:
-        """Start what the case needs; processes started through the session end with it."""
+    def drive(self, session: Session, case: Case) -> Any:
+        """Run the case; returns the record of what happened. RunError if it could not be run.
 
-    @abstractmethod
-    def run(self) -> Any:
-        """Run the case; returns the record of what happened. RunError if it could not be run."""
+        Processes started through the session end with it; `session.once` keeps what all cases use.
+        """
 
-    def score(self, record: Any) -> Any:
-        """The result of a record: the record itself if it was judged during the run."""
+    def judge(self, record: Any) -> Any:
+        """The result of a record: the record itself if it was judged during the drive."""
         return record
 
     # --- all results
@@ -124,6 +125,7 @@ class Trial(ABC):
         options.out = options.out.resolve()
         options.shared = {name: str(getattr(options, name)) for name in self.shared}
         self.check(options)
+        self.options = options
         return options
 
 
@@ -158,12 +160,6 @@ class ReportedTrial(Trial):
             raise RunError(f"{path}: {error.strerror}; nothing to go on with") from error
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise RunError(f"{path}: no report of {self.program}: {error!r}") from error
-
-
-def try_case(trial: Trial, session: Session, case: Case) -> Any:
-    """The result of one case."""
-    trial.setup(session, case)
-    return trial.score(trial.run())
 
 
 def from_json(kind: Any, value: Any) -> Any:
@@ -255,7 +251,7 @@ def _try_here(tally: Tally, trial: Trial, out: Path) -> None:
     with Session(out) as session:
         for case in tally.cases:
             if tally.is_needed(case):
-                tally.take(try_case(trial, session, case), session.progress.say)
+                tally.take(trial.judge(trial.drive(session, case)), session.progress.say)
 
 
 def _try_elsewhere(tally: Tally, trial: Trial, options: argparse.Namespace,

@@ -19,7 +19,7 @@ from evaluation.command_line import Parser
 from evaluation.lap_trial import MODEL_PATH
 from evaluation.trial import REPORT, Case, ReportedTrial
 from marking.bubblewrap import Kind, available, hidden, namespace, shown
-from marking.case_files import COURSES, CaseFile, make_scene
+from marking.case_files import COURSES, CaseFile, Scene, make_scene
 from marking.case_runner import BY_TIME
 from marking.course_startup import STARTUP_LIMIT
 from marking.marks import (
@@ -55,6 +55,16 @@ class MarkedCase(Case):
     seed: int
 
 
+@dataclass(frozen=True)
+class Record:
+    """What happened in a case."""
+
+    case: MarkedCase
+    submission_sha256: str
+    report: dict  # of the drive, or what prevented it
+    driven: bool = True  # False: there was nothing to drive
+
+
 class MarkingTrial(ReportedTrial):
     """One case for each combination of submission, track and seed."""
 
@@ -86,82 +96,71 @@ class MarkingTrial(ReportedTrial):
             raise RunError(f"{given} must be one of {', '.join(COURSES)}, is {course!r}")
         for track in rules.tracks:
             load_track(Path(track))
-        self._rules = dataclasses.replace(rules, course=course,
-                                          seeds=options.seeds or rules.seeds)
-        self._rules_path, self._out, self._film = path, options.out, options.film
-        self._rules_digest = _digest(course, [path, *map(Path, rules.tracks)])
-        self._submissions = {each.student: each for each in find_submissions(options.submissions)}
-        self._kind = Kind.NONE if options.no_sandbox else available()
-        self._refuse_what_the_sandbox_shows(options)
-
-    def _refuse_what_the_sandbox_shows(self, options: argparse.Namespace) -> None:
-        for what, path in (("--submissions", options.submissions), ("--out", options.out),
-                           ("--rules", options.rules)):
-            seen = path and any(map(path.resolve().is_relative_to, shown())) and not any(
-                map(path.resolve().is_relative_to, hidden()))
-            if seen and self._kind is not Kind.NONE:
-                raise RunError(f"{what} {path}: every submission could read it there; put it "
-                               f"outside {' '.join(map(str, shown()))}")
+        given, options.rules_path = options.rules, path
+        options.rules = dataclasses.replace(rules, course=course,
+                                            seeds=options.seeds or rules.seeds)
+        options.rules_sha256 = _digest(course, [path, *map(Path, rules.tracks)])
+        options.found = {each.student: each for each in find_submissions(options.submissions)}
+        options.kind = Kind.NONE if options.no_sandbox else available()
+        if options.kind is not Kind.NONE:
+            _refuse_what_the_sandbox_shows(("--submissions", options.submissions),
+                                           ("--out", options.out), ("--rules", given))
 
     def cases(self, options: argparse.Namespace) -> list[MarkedCase]:
-        rules = self._rules
+        rules = options.rules
         return [MarkedCase(f"{student}/{track}-{seed}", student, track, seed)
-                for student in self._submissions for track in range(1 + len(rules.tracks))
+                for student in options.found for track in range(1 + len(rules.tracks))
                 for seed in range(rules.first_seed, rules.first_seed + rules.seeds)]
 
-    def setup(self, session: Session, case: MarkedCase) -> None:
-        self._session, self._case, self._fault = session, case, ""
-        folder = self._folder(case)
+    def drive(self, session: Session, case: MarkedCase) -> Record:
+        options = self.options
+        folder, submission = _folder(options.out, case), options.found[case.student]
         folder.mkdir(parents=True, exist_ok=True)
-        self._digest = digest(self._submissions[case.student].source)
+        sha256 = digest(submission.source)
         try:
-            program = prepare(self._submissions[case.student], folder / SUBMISSION,
-                              self._rules.program)
+            program = prepare(submission, folder / SUBMISSION, options.rules.program)
         except (UnpackError, OSError) as error:
             if isinstance(error, OSError) and error.errno == errno.ENOSPC:
                 raise
-            self._fault = one_line(str(error))
-            return
-        self._scene = scene = make_scene(
-            self._rules, case.track, case.seed, self._out / "scenes" / _case_name(case))
-        self._file = CaseFile(
-            str(self._rules_path), self._kind.value, self._rules.course, self._rules.laps,
-            str(folder / SUBMISSION), str(program), str(scene.track), self._film,
+            fault = {"outcome": "fault", "violations": [], "fault": one_line(str(error))}
+            return Record(case, sha256, fault, driven=False)
+        scene = make_scene(options.rules, case.track, case.seed,
+                           options.out / "scenes" / _case_name(case))
+        file = CaseFile(
+            str(options.rules_path), options.kind.value, options.rules.course, options.rules.laps,
+            str(folder / SUBMISSION), str(program), str(scene.track), options.film,
             scene.launch_args)
-
-    def run(self) -> dict:
-        """The report of the drive, or what prevented it."""
-        if self._fault:
-            return {"outcome": "fault", "violations": [], "fault": self._fault}
-        report = self._drive(self._file)
+        report = self._drive(session, case, scene, file)
         if report["outcome"] == BY_TIME:
-            report = self._drive(self._file.by_time(self._rules.limits)) | {"note": TIMED}
-        return report
+            again = file.by_time(options.rules.limits)
+            report = self._drive(session, case, scene, again) | {"note": TIMED}
+        return Record(case, sha256, report)
 
-    def _drive(self, file: CaseFile) -> dict:
-        folder = self._folder(self._case)
+    def _drive(self, session: Session, case: MarkedCase, scene: Scene, file: CaseFile) -> dict:
+        """The report of the drive, or what prevented it."""
+        folder = _folder(self.options.out, case)
         file.write(folder)
-        command = [*namespace(self._kind), sys.executable, "-P", "-m", "marking.case_runner",
-                   str(folder)]
-        environment = {**os.environ, MODEL_PATH: self._scene.models, "ROS_HOSTNAME": LOOPBACK}
-        limits = self._rules.limits
+        command = [*namespace(self.options.kind), sys.executable, "-P", "-m",
+                   "marking.case_runner", str(folder)]
+        environment = {**os.environ, MODEL_PATH: scene.models, "ROS_HOSTNAME": LOOPBACK}
+        limits = self.options.rules.limits
         limit = limits.start_s + limits.wall_s + 3 * STARTUP_LIMIT
         for _ in range(TRIES):
             try:
-                drive = self._session.start_drive(command, folder, environment)
-                return drive.report(limit, self._case.name)
+                return session.start_drive(command, folder, environment).report(limit, case.name)
             except RunError as error:
                 failure = str(error)
         return {"outcome": NOT_RUN, "violations": [], "fault": failure}
 
-    def score(self, record: dict) -> Mark:
-        case = self._case
-        shutil.rmtree(self._folder(case) / SUBMISSION, ignore_errors=True)  # the original is kept
-        points, lost = points_of(record, self._rules.points)
-        folder = "" if self._fault else str(self._folder(case).relative_to(self._out))
-        return Mark(case.name, case.student, _case_name(case), record["outcome"], points,
-                    tuple(map(one_line, lost)), folder, record.get("note", ""),
-                    self._digest)
+    def judge(self, record: Record) -> Mark:
+        case, report, out = record.case, record.report, self.options.out
+        folder = _folder(out, case)
+        shutil.rmtree(folder / SUBMISSION, ignore_errors=True)  # the original is kept
+        points, lost = points_of(report, self.options.rules.points)
+        return Mark(case.name, case.student, _case_name(case), report["outcome"], points,
+                    tuple(map(one_line, lost)),
+                    str(folder.relative_to(out)) if record.driven else "",
+                    report.get("note", ""), record.submission_sha256)
 
     def passed(self, results: Sequence[Mark]) -> bool:
         return all(mark.outcome != NOT_RUN for mark in results)
@@ -173,11 +172,11 @@ class MarkingTrial(ReportedTrial):
     def table(self, results: Sequence[Mark]) -> str:
         rows = [f"{mean([mark.points for mark in marks]):7.2f}  {student}"
                 for student, marks in by_student(results).items()]
-        warned = [] if self._kind is not Kind.NONE else ["without a sandbox (--no-sandbox)"]
+        warned = [] if self.options.kind is not Kind.NONE else ["without a sandbox (--no-sandbox)"]
         return "\n".join([" points  student", *rows, *warned])
 
     def values(self, results: Sequence[Mark]) -> dict:
-        return {"sandbox": self._kind.value, "rules_sha256": self._rules_digest,
+        return {"sandbox": self.options.kind.value, "rules_sha256": self.options.rules_sha256,
                 "marks": [dataclasses.asdict(mark) for mark in results]}
 
     def earlier(self, options: argparse.Namespace) -> list[Mark]:
@@ -185,16 +184,17 @@ class MarkingTrial(ReportedTrial):
         return super().earlier(options) if (options.out / REPORT).exists() else []
 
     def from_values(self, values: dict) -> list[Mark]:
-        if values["rules_sha256"] != self._rules_digest:
-            raise RunError(f"{self._out}: was marked by other rules or tracks; "
+        if values["rules_sha256"] != self.options.rules_sha256:
+            raise RunError(f"{self.options.out}: was marked by other rules or tracks; "
                            "choose another --out")
-        if (values["sandbox"] == Kind.NONE.value) != (self._kind is Kind.NONE):
-            raise RunError(f"{self._out}: was marked {SANDBOXED[values['sandbox']]}, this run is "
-                           f"{SANDBOXED[self._kind.value]}; choose another --out")
+        if (values["sandbox"] == Kind.NONE.value) != (self.options.kind is Kind.NONE):
+            raise RunError(
+                f"{self.options.out}: was marked {SANDBOXED[values['sandbox']]}, this run is "
+                f"{SANDBOXED[self.options.kind.value]}; choose another --out")
         marks = [Mark(**{**each, "lost": tuple(each["lost"])}) for each in values["marks"]
                  if each["outcome"] != NOT_RUN]
         changed = {student for student, rows in by_student(marks).items()
-                   if (there := self._submissions.get(student))
+                   if (there := self.options.found.get(student))
                    and {digest(there.source)} != {mark.submission_sha256 for mark in rows}}
         for student in sorted(changed):
             print(f"{student}: the submission has changed, it is marked again", flush=True)
@@ -202,14 +202,23 @@ class MarkingTrial(ReportedTrial):
 
     def pictures(self, results: Sequence[Mark], out: Path) -> list[str]:
         marks = by_student(results)
-        write_student_pages(marks, self._rules, out)
-        write_marks(marks, self._rules, self._kind, out)
+        write_student_pages(marks, self.options.rules, out)
+        write_marks(marks, self.options.rules, self.options.kind, out)
         print(f"the marks: {out / MARKS}, {out / PAGE}, and for each student a page below "
               f"{out / 'students'}", flush=True)
         return []
 
-    def _folder(self, case: MarkedCase) -> Path:
-        return self._out / "cases" / case.student / _case_name(case)
+
+def _refuse_what_the_sandbox_shows(*given: tuple[str, Path | None]) -> None:
+    for what, path in given:
+        if path and any(map(path.resolve().is_relative_to, shown())) and not any(
+                map(path.resolve().is_relative_to, hidden())):
+            raise RunError(f"{what} {path}: every submission could read it there; put it "
+                           f"outside {' '.join(map(str, shown()))}")
+
+
+def _folder(out: Path, case: MarkedCase) -> Path:
+    return out / "cases" / case.student / _case_name(case)
 
 
 def _digest(course: str, files: Sequence[Path]) -> str:

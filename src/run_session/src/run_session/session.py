@@ -14,7 +14,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import TextIO
+from typing import TextIO, TypeVar
 
 from run_session.failure import RunError
 from run_session.files import check_space
@@ -24,6 +24,8 @@ from run_session.processes import Child, Family
 PLAIN_PERIOD = 10.0  # s, simulated
 TERMINAL_PERIOD = 0.2  # s, wall
 RATE_WINDOW = 5.0  # s, wall, over which the real-time factor is taken
+
+T = TypeVar("T")
 
 
 class StatusLine:
@@ -122,6 +124,7 @@ class Session:
         self.family = Family()
         self.progress = StatusLine()
         self._at_end = contextlib.ExitStack()
+        self._shared: list = []
 
     def __enter__(self) -> Session:
         return self
@@ -135,6 +138,12 @@ class Session:
             raise
         finally:
             self.progress.end()
+
+    def once(self, make: Callable[[], T]) -> T:
+        """What `make` returned at the first call: that which all cases of this session use."""
+        if not self._shared:
+            self._shared.append(make())
+        return self._shared[0]
 
     def at_end(self, act: Callable[[], object]) -> None:
         """Call `act` before the processes are ended."""
