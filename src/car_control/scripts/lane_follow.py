@@ -12,8 +12,7 @@ import cv_bridge
 import rospy
 from car_control.images import picture_of
 from car_control.lane.lane_driver import FOLLOWING, SEARCHING, STOPPED, LaneDriver
-from car_control.lane.lane_settings import LaneSettings
-from car_control.lane.line_finding import find_line
+from car_control.lane.line_finding import LaneSettings, find_line
 from car_control.node import Ending, read_settings, start_node
 from car_control.reconfigure import serve_settings
 from geometry_msgs.msg import Twist

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import rospy
 import rostest
-from car_control.lane.lane_settings import LaneSettings
+from car_control.lane.line_finding import LaneSettings
 from car_control.settings import load_settings
 from drawn_road import track
 from dynamic_reconfigure.client import Client

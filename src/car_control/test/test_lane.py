@@ -7,11 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from car_control.driving.ackermann import CarGeometry
-from car_control.lane.bend_memory import BendMemory
-from car_control.lane.bends import bends_along
-from car_control.lane.lane_driver import FOLLOWING, SEARCHING, STOPPED, WAITING, LaneDriver
-from car_control.lane.lane_settings import LaneSettings
-from car_control.lane.line_finding import find_line
+from car_control.lane.lane_driver import (
+    FOLLOWING,
+    SEARCHING,
+    STOPPED,
+    WAITING,
+    BendMemory,
+    LaneDriver,
+    bends_along,
+)
+from car_control.lane.line_finding import LaneSettings, find_line
 from car_control.motor import MotorSettings
 from car_control.settings import load_settings
 from drawn_road import FRAME, Road, drive, track

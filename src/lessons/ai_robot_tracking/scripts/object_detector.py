@@ -12,10 +12,15 @@ import cv2
 import rosgraph
 import rospy
 from ai_robot_tracking.detection.decoding import nothing
-from ai_robot_tracking.detection.messages import PictureError, detections_of, image_of, rgb_of
+from ai_robot_tracking.detection.messages import (
+    PictureError,
+    annotated,
+    detections_of,
+    image_of,
+    rgb_of,
+)
 from ai_robot_tracking.detection.model import Model, ModelError
 from ai_robot_tracking.detection.newest import Newest
-from ai_robot_tracking.detection.picture import annotated
 from ai_robot_tracking.detection.settings import FIELDS, read_settings
 from ai_robot_tracking.parameters import own_parameters
 from ai_robot_tracking.settings import SettingsError

@@ -5,8 +5,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ai_robot_tracking.detection.decoding import V5, V8, decode, layout_of
-from ai_robot_tracking.detection.letterbox import PADDING, letterbox, to_picture
+from ai_robot_tracking.detection.decoding import (
+    PADDING,
+    V5,
+    V8,
+    decode,
+    layout_of,
+    letterbox,
+    to_picture,
+)
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))

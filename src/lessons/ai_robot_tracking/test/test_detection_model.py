@@ -6,12 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from ai_robot_tracking.detection.messages import PictureError, rgb_of
+from ai_robot_tracking.detection.messages import PictureError, annotated, rgb_of
 from ai_robot_tracking.detection.model import Model, ModelError
-from ai_robot_tracking.detection.names import names_of_export
 from ai_robot_tracking.detection.newest import Newest
-from ai_robot_tracking.detection.picture import annotated
-from ai_robot_tracking.detection.settings import read_settings
+from ai_robot_tracking.detection.settings import names_of_export, read_settings
 from ai_robot_tracking.settings import SettingsError
 from sensor_msgs.msg import Image
 

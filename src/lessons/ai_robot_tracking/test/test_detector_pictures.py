@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ai_robot_tracking.training.classes import CLASSES
+from ai_robot_tracking.training import CLASSES
 from ai_robot_tracking.training.dataset import (
     INPUT_HEIGHT,
     INPUT_WIDTH,
@@ -15,9 +15,8 @@ from ai_robot_tracking.training.dataset import (
 )
 from ai_robot_tracking.training.drawing import draw_picture, draw_stage
 from ai_robot_tracking.training.main import main
-from ai_robot_tracking.training.solids import Thing, bar, box, coloured
 from ai_robot_tracking.training.staging import Stage
-from ai_robot_tracking.training.things import MAKERS
+from ai_robot_tracking.training.things import MAKERS, Thing, bar, box, coloured
 
 from bullet_sim.description import SceneDescription
 from bullet_sim.pose import Pose

@@ -4,14 +4,16 @@ import math
 
 import numpy as np
 import pytest
-from ai_robot_tracking.training.mean_average_precision import (
+from ai_robot_tracking.training.scoring import (
     Found,
+    Judged,
     Truth,
     average_precision,
+    confusion,
     mean_average_precision,
     overlaps,
+    recall_by_size,
 )
-from ai_robot_tracking.training.scoring import Judged, confusion, recall_by_size
 
 HERE, THERE, AWAY = (0, 0, 10, 10), (20, 0, 40, 10), (60, 60, 80, 80)
 

@@ -6,11 +6,10 @@ from pathlib import Path
 
 import pytest
 from ai_robot_tracking.detection.model import Model
-from ai_robot_tracking.training.classes import CLASSES
+from ai_robot_tracking.training import CLASSES
 from ai_robot_tracking.training.dataset import TEST_FIRST
 from ai_robot_tracking.training.drawing import draw_picture
-from ai_robot_tracking.training.mean_average_precision import mean_average_precision
-from ai_robot_tracking.training.scoring import judge
+from ai_robot_tracking.training.scoring import judge, mean_average_precision
 
 from bullet_sim.rendering.renderer import open_renderer
 

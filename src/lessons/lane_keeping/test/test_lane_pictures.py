@@ -8,12 +8,11 @@ import pytest
 from drawn_lane import Person, draw
 from lane_keeping import binarise
 from lane_keeping.binarise import line_mask
+from lane_keeping.crossing import find_people, find_zebra
 from lane_keeping.image_watch import FrozenWatch, is_blank, mistake_in
 from lane_keeping.lane import LEFT, RIGHT, Side, beside, fit_side, make_lane
-from lane_keeping.people import find_people
 from lane_keeping.road_view import road_view
 from lane_keeping.settings import load_settings
-from lane_keeping.zebra import find_zebra
 
 SETTINGS = load_settings(Path(__file__).parents[1] / "config" / "lane_keeping.yaml")
 VIEW = road_view(SETTINGS, 640, 480)

@@ -1,4 +1,8 @@
-"""Steering and speed from the points of a line: PID on the error ahead, slower before bends."""
+"""Steering and speed from the points of a line: PID on the error ahead, slower before bends.
+
+The camera sees no road nearer than just before the front wheels. The curvature from the rear axle
+to there was seen a moment ago, and is remembered; only the distance driven since has to be known.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +13,95 @@ import numpy as np
 
 from car_control.driving.pid import Pid, PidGains
 from car_control.driving.speed_profile import SpeedLimits, speed_profile
-from car_control.lane.bend_memory import BendMemory
-from car_control.lane.bends import Bend, bends_along
-from car_control.lane.lane_settings import LaneSettings
+from car_control.lane.line_finding import LaneSettings
+
+FEWEST = 4  # points needed to fit a bend
+
+
+@dataclass(frozen=True)
+class Bend:
+    """The line near one place, in the frame of its points."""
+
+    s: float  # m along the line, from its first point
+    x: float  # m
+    y: float  # m
+    heading: float  # rad
+    curvature: float  # 1/m, left positive
+
+
+def bends_along(points: np.ndarray, spacing: float, window: float) -> list[Bend]:
+    """Bends at the first point and every `spacing` m; none for fewer than FEWEST points.
+
+    points: (n, 2) m, in order. window: m of line to which each parabola is fitted, half of it on
+    each side, if the line is that long.
+    """
+    if len(points) < FEWEST:
+        return []
+    s = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    return [_fit(points, s, place, window) for place in np.arange(0.0, s[-1], spacing)]
+
+
+def _fit(points: np.ndarray, s: np.ndarray, place: float, window: float) -> Bend:
+    begin = max(0.0, min(place - window / 2, s[-1] - window))
+    near = points[(s >= begin - 1e-9) & (s <= begin + window)]
+    if len(near) < FEWEST:
+        first = int(np.clip(np.searchsorted(s, place) - FEWEST // 2, 0, len(points) - FEWEST))
+        near = points[first : first + FEWEST]
+    middle = np.array([np.interp(place, s, points[:, k]) for k in (0, 1)])
+    turned = math.atan2(*(near[-1] - near[0])[::-1])
+    c, d = math.cos(turned), math.sin(turned)
+    along, across = ((near - middle) @ np.array([[c, -d], [d, c]])).T
+    c2, c1, c0 = np.polyfit(along, across, 2)
+    x, y = middle + c0 * np.array((-d, c))
+    # A parabola's curvature falls off from its vertex, a road's does not: use the vertex's.
+    return Bend(place, float(x), float(y), turned + math.atan(c1), float(2 * c2))
+
+
+STEP = 0.05  # m, integration step
+LEAST = 0.01  # m between two entries, at least
+BEHIND = 0.5  # m that are kept
+
+
+class BendMemory:
+    """Curvatures (1/m, left positive) at places ahead of the rear axle, in m along the line."""
+
+    def __init__(self) -> None:
+        self.forget()
+
+    def forget(self) -> None:
+        self._places: list[float] = []  # m from where the memory starts, ascending
+        self._curvatures: list[float] = []
+        self._driven = 0.0
+
+    def drive(self, way: float) -> None:
+        """The car has moved forward by `way` m."""
+        self._driven += way
+        while len(self._places) > 1 and self._places[1] < self._driven - BEHIND:
+            del self._places[0], self._curvatures[0]
+
+    def see(self, ahead: float, curvature: float) -> None:
+        """The line has this curvature `ahead` m from here; older values beyond are dropped."""
+        place = self._driven + ahead
+        while self._places and self._places[-1] > place - LEAST:
+            del self._places[-1], self._curvatures[-1]
+        self._places.append(place)
+        self._curvatures.append(curvature)
+
+    def curvature(self, ahead: np.ndarray | float) -> np.ndarray:
+        """The curvature at these places ahead; beyond the last known one, its value; else 0."""
+        if not self._places:
+            return np.zeros(np.shape(ahead))
+        return np.interp(np.add(ahead, self._driven), self._places, self._curvatures)
+
+    def shape(self, length: float) -> np.ndarray:
+        """(n, 3) x, y (m) and heading (rad) of the line, as if the car stood on it."""
+        way = np.arange(0.0, length + STEP, STEP)
+        heading = np.concatenate([[0.0], np.cumsum(self.curvature(way[:-1] + STEP / 2)) * STEP])
+        middle = (heading[1:] + heading[:-1]) / 2
+        x = np.concatenate([[0.0], np.cumsum(np.cos(middle)) * STEP])
+        y = np.concatenate([[0.0], np.cumsum(np.sin(middle)) * STEP])
+        return np.stack([x, y, heading], axis=1)
+
 
 SPACING = 0.2  # m between the places whose bends are computed
 WINDOW = 0.6  # m of line to which one bend is fitted

@@ -1,6 +1,7 @@
-"""A detected lane: a second-order curve for each line, and the centre line between them.
+"""A detected lane, and speed and turn rate for it: the tutorial's law, and pure pursuit.
 
-A curve is (3,) coefficients of column = a row^2 + b row + c, in pixels of the region of interest.
+A line is a second-order curve, and so is the centre line between two: (3,) coefficients of
+column = a row^2 + b row + c, in pixels of the region of interest.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lane_keeping.road_view import RoadView
+from lane_keeping.settings import Settings
 
 LEFT, RIGHT = 1.0, -1.0
 MIN_SPAN = 20  # rows that a line's pixels must span to show its direction
@@ -98,3 +100,55 @@ def _are_a_lane(left: Side, right: Side, view: RoadView) -> bool:
     rows = np.linspace(min(first, last), last, 5)
     apart = np.polyval(right.curve - left.curve, rows) / np.maximum(view.lane_width_px(rows), 1e-6)
     return bool(NARROWEST < np.median(apart) < WIDEST)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The command for a lane, and the reasons."""
+
+    lane: Lane
+    target: tuple[float, float]  # px, the centre line's point to steer to
+    error: float  # share of half the image's width, right positive
+    curvature: float  # 1/px, of the centre line at the target
+    speed: float  # m/s
+    turn: float  # rad/s, left positive
+
+
+def curvature_px(curve: np.ndarray, row: float) -> float:
+    """Curvature in 1/px, never negative, of column(row)."""
+    slope = 2 * curve[0] * row + curve[1]
+    return float(abs(2 * curve[0]) / (1 + slope**2) ** 1.5)
+
+
+def cruise(error: float, curvature: float, settings: Settings) -> float:
+    """Speed in m/s: slower in bends, which show as curvature or as error."""
+    bend = curvature > settings.bend_curvature or abs(error) > settings.bend_error
+    return settings.bend_speed if bend else settings.straight_speed
+
+
+def steer_by_error(lane: Lane | None, view: RoadView, settings: Settings) -> Plan | None:
+    """The tutorial's law: turn in proportion to the centre line's offset at the look-ahead row."""
+    if lane is None:
+        return None
+    row = settings.look_ahead * view.rows
+    column = float(np.polyval(lane.centre.curve, row))
+    error = column / (view.width / 2) - 1
+    curvature = curvature_px(lane.centre.curve, row)
+    turn = float(np.clip(-settings.steer_gain * error, -settings.max_turn, settings.max_turn))
+    return Plan(lane, (column, row), error, curvature, cruise(error, curvature, settings), turn)
+
+
+def steer_by_pursuit(
+    lane: Lane | None, goal: tuple[float, float], view: RoadView, settings: Settings
+) -> Plan | None:
+    """Pure pursuit: the arc through a goal (ahead, left) in m on the ground."""
+    if lane is None:
+        return None
+    ahead, left = goal
+    column, row = view.to_pixels(np.array([goal]))[0]
+    error = float(column) / (view.width / 2) - 1
+    curvature = curvature_px(lane.centre.curve, float(row))
+    speed = cruise(error, curvature, settings)
+    turn = speed * 2 * left / (ahead**2 + left**2)
+    turn = float(np.clip(turn, -settings.max_turn, settings.max_turn))
+    return Plan(lane, (float(column), float(row)), error, curvature, speed, turn)

@@ -9,14 +9,12 @@ import cv2
 import numpy as np
 
 from lane_keeping.binarise import line_mask
-from lane_keeping.crossing import Crossing
+from lane_keeping.crossing import Crossing, Zebra, find_people, find_zebra
 from lane_keeping.image_watch import FrozenWatch, is_blank
+from lane_keeping.lane import Plan
 from lane_keeping.methods import method_called
-from lane_keeping.people import find_people
 from lane_keeping.road_view import RoadView, road_view
 from lane_keeping.settings import Settings
-from lane_keeping.steering import Plan
-from lane_keeping.zebra import Zebra, find_zebra
 
 LANE, PERSON, LOST, SEARCHING, STOPPED, BLANK, FROZEN = (
     "lane", "person", "lost", "searching", "stopped", "blank image", "frozen image",

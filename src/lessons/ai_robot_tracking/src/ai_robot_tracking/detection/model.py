@@ -8,9 +8,16 @@ import cv2
 import numpy as np
 import onnxruntime
 
-from ai_robot_tracking.detection.decoding import V5, Detections, decode, layout_of
-from ai_robot_tracking.detection.letterbox import PADDING, letterbox, to_picture
-from ai_robot_tracking.detection.names import (
+from ai_robot_tracking.detection.decoding import (
+    PADDING,
+    V5,
+    Detections,
+    decode,
+    layout_of,
+    letterbox,
+    to_picture,
+)
+from ai_robot_tracking.detection.settings import (
     LARGEST,
     names_of_export,
     read_sidecar,

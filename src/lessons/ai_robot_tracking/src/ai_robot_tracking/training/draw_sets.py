@@ -6,9 +6,9 @@ import multiprocessing
 import time
 from pathlib import Path
 
+from ai_robot_tracking.training import TrainingError
 from ai_robot_tracking.training.dataset import SHARD, fitted, holds, write_set
 from ai_robot_tracking.training.drawing import draw_picture
-from ai_robot_tracking.training.errors import TrainingError
 from bullet_sim.errors import SimulationError
 from bullet_sim.rendering.renderer import Renderer, open_renderer
 

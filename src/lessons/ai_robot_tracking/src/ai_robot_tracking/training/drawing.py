@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from ai_robot_tracking.training.classes import CLASSES
-from ai_robot_tracking.training.solids import Thing, coloured, link_shape
+from ai_robot_tracking.training import CLASSES
 from ai_robot_tracking.training.staging import WIDTH_PX, Stage, make_stage
+from ai_robot_tracking.training.things import Thing, coloured, link_shape
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import IDENTITY
 from bullet_sim.rendering.frame import CameraView

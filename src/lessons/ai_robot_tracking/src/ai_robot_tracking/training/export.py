@@ -12,7 +12,7 @@ import onnx
 import torch
 from onnx import TensorProto, helper, numpy_helper
 
-from ai_robot_tracking.training.classes import CLASSES
+from ai_robot_tracking.training import CLASSES
 from ai_robot_tracking.training.dataset import INPUT_HEIGHT, INPUT_WIDTH
 from ai_robot_tracking.training.layers import (
     ADD,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ai_robot_tracking.training.classes import CLASSES
+from ai_robot_tracking.training import CLASSES
 
 STRIDES = (8, 16, 32)
 CONV, HEAD, ADD, CONCAT, DOUBLE, POOL = "conv", "head", "add", "concat", "double", "pool"

@@ -7,7 +7,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from ai_robot_tracking.training.errors import TrainingError
+from ai_robot_tracking.training import TrainingError
 
 DONE, NOT_GOOD, NOT_RUN = 0, 1, 2
 PICTURES, TESTED = 6000, 500
@@ -95,8 +95,7 @@ def _draw(given: argparse.Namespace) -> int:
 
 
 def _train(given: argparse.Namespace) -> int:
-    from ai_robot_tracking.training.training import FIRST, FURTHER
-    from ai_robot_tracking.training.training_run import run_training
+    from ai_robot_tracking.training.training import FIRST, FURTHER, run_training
 
     plan = replace(FURTHER if given.start else FIRST, seed=given.seed)
     plan = replace(plan, steps=given.steps, until=given.steps) if given.steps else plan

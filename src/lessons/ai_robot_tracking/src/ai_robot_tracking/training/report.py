@@ -11,18 +11,17 @@ import cv2
 import numpy as np
 
 from ai_robot_tracking.detection.decoding import Detections
+from ai_robot_tracking.detection.messages import annotated
 from ai_robot_tracking.detection.model import Model, ModelError
-from ai_robot_tracking.detection.picture import annotated
-from ai_robot_tracking.training.classes import CLASSES
+from ai_robot_tracking.training import CLASSES, TrainingError
 from ai_robot_tracking.training.dataset import TEST_FIRST
 from ai_robot_tracking.training.draw_sets import open_drawing
 from ai_robot_tracking.training.drawing import Picture, draw_picture
-from ai_robot_tracking.training.errors import TrainingError
-from ai_robot_tracking.training.mean_average_precision import average_precision
 from ai_robot_tracking.training.scoring import (
     CONFIDENCE,
     IOU,
     Judged,
+    average_precision,
     confusion,
     judge,
     milliseconds,

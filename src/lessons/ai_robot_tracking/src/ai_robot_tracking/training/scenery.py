@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from ai_robot_tracking.training.patterns import FLOOR_PX, any_colour, pattern
-from ai_robot_tracking.training.solids import Thing, ball, box, coloured, plate
-from ai_robot_tracking.training.things import Images, post
+from ai_robot_tracking.training.things import Images, Thing, ball, box, coloured, plate, post
 from bullet_sim.description import Fog, LightDescription, Plane, SceneDescription
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Pose

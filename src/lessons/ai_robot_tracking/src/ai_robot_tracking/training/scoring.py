@@ -1,16 +1,103 @@
-"""A model's accuracy on newly rendered worlds, with the node's own code, and its speed."""
+"""A model's accuracy on newly rendered worlds, with the node's own code, and its speed.
+
+Mean average precision: how well the detected boxes agree with the true ones.
+
+For each class, the boxes detected in all images are sorted by score. One is correct if it overlaps
+a true box of its class by at least `overlap`, and no box with a higher score was matched to that
+one; a box that overlaps one that does not count is ignored. The area under the curve of precision
+over recall, made non-increasing, is the class's average precision; the result is the classes' mean.
+"""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ai_robot_tracking.detection.model import Model
 from ai_robot_tracking.training.drawing import Picture
-from ai_robot_tracking.training.mean_average_precision import Found, Truth, overlaps
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a detector found in one image."""
+
+    boxes: np.ndarray  # (n, 4) left, top, right, bottom, px
+    scores: np.ndarray  # (n,) 0..1
+    classes: np.ndarray  # (n,) int
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The true boxes of one image."""
+
+    boxes: np.ndarray  # (n, 4) as above
+    classes: np.ndarray  # (n,) int
+    counts: np.ndarray  # (n,) bool; false: neither missed nor a false detection
+
+
+def overlaps(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """(n, m) intersection over union of boxes (n, 4) and (m, 4)."""
+    low = np.maximum(first[:, None, :2], second[None, :, :2])
+    high = np.minimum(first[:, None, 2:], second[None, :, 2:])
+    common = np.clip(high - low, 0, None).prod(axis=2)
+    areas = [(boxes[:, 2:] - boxes[:, :2]).prod(axis=1) for boxes in (first, second)]
+    return common / np.maximum(areas[0][:, None] + areas[1][None] - common, 1e-9)
+
+
+def average_precision(
+    found: Sequence[Found], truth: Sequence[Truth], label: int, overlap: float = 0.5
+) -> float:
+    """Average precision of one class over all images, 0..1; nan if it has no boxes."""
+    scores, right, total = [], [], 0
+    for seen, real in zip(found, truth, strict=True):
+        of_class, wanted = seen.classes == label, real.classes == label
+        total += int((wanted & real.counts).sum())
+        hits = _hits(seen.boxes[of_class], seen.scores[of_class], real.boxes[wanted],
+                     real.counts[wanted], overlap)
+        scores.append(seen.scores[of_class][hits >= 0])
+        right.append(hits[hits >= 0])
+    if total == 0:
+        return float("nan")
+    order = np.argsort(-np.concatenate(scores), kind="stable")
+    return _area(np.concatenate(right)[order], total)
+
+
+def mean_average_precision(
+    found: Sequence[Found], truth: Sequence[Truth], classes: int, overlap: float = 0.5
+) -> float:
+    """The mean over the classes that have boxes."""
+    each = [average_precision(found, truth, label, overlap) for label in range(classes)]
+    return float(np.nanmean(each))
+
+
+def _hits(boxes: np.ndarray, scores: np.ndarray, real: np.ndarray, counts: np.ndarray,
+          overlap: float) -> np.ndarray:
+    """(n,) 1: correct, 0: wrong, -1: ignored; in the given order."""
+    hits = np.zeros(len(boxes), int)
+    common = overlaps(boxes, real)
+    free = counts.copy()
+    for index in np.argsort(-scores, kind="stable"):
+        candidates = np.where(free, common[index], 0.0)
+        if len(real) and candidates.max() >= overlap:
+            free[candidates.argmax()] = False
+            hits[index] = 1
+        elif len(real) and np.where(counts, 0.0, common[index]).max() >= overlap:
+            hits[index] = -1
+    return hits
+
+
+def _area(right: np.ndarray, total: int) -> float:
+    """The area under precision over recall, for hits (1) and misses (0) in order of score."""
+    if not len(right):
+        return 0.0
+    hits = np.cumsum(right)
+    precision = hits / np.arange(1, len(right) + 1)
+    falling = np.maximum.accumulate(precision[::-1])[::-1]
+    return float((falling * right).sum() / total)
+
 
 LEAST = 0.01  # lowest score of counted boxes, so that the curve is complete
 CONFIDENCE, IOU = 0.25, 0.45  # the node's, for the confusion matrix

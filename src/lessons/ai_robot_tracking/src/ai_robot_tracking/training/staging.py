@@ -7,10 +7,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ai_robot_tracking.training.classes import CLASSES
+from ai_robot_tracking.training import CLASSES
 from ai_robot_tracking.training.scenery import air, distractor, lamps, surroundings
-from ai_robot_tracking.training.solids import Thing
-from ai_robot_tracking.training.things import FACING, MAKERS, Images
+from ai_robot_tracking.training.things import FACING, MAKERS, Images, Thing
 from bullet_sim.description import LightDescription, SceneDescription
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Pose

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from lane_keeping.lane import Marks, fit_side, make_lane
+from lane_keeping.lane import Marks, Plan, fit_side, make_lane, steer_by_error
 from lane_keeping.road_view import RoadView
 from lane_keeping.settings import Settings
-from lane_keeping.steering import Plan, steer_by_error
 
 STRIPS = 16
 SMOOTHING = 9  # columns

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from lane_keeping.lane import Lane, Marks, fit_side, make_lane
+from lane_keeping.lane import Lane, Marks, Plan, fit_side, make_lane, steer_by_pursuit
 from lane_keeping.road_view import RoadView
 from lane_keeping.settings import Settings
-from lane_keeping.steering import Plan, steer_by_pursuit
 
 ROWS = 30  # searched
 NEAREST, FARTHEST = 0.6, 1.6  # half lane widths between the middle and a line

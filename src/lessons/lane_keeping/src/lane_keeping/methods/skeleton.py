@@ -8,10 +8,9 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from lane_keeping.lane import Marks, Side, fit_side, make_lane
+from lane_keeping.lane import Marks, Plan, Side, fit_side, make_lane, steer_by_error
 from lane_keeping.road_view import RoadView
 from lane_keeping.settings import Settings
-from lane_keeping.steering import Plan, steer_by_error
 
 CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 MAX_STEPS = 40  # a line is at most twice as wide, px

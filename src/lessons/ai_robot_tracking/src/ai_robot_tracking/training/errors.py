@@ -1,5 +1,0 @@
-"""Errors that end the training of a detector."""
-
-
-class TrainingError(Exception):
-    """One line with the error and what to type instead."""
