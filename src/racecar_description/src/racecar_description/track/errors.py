@@ -27,12 +27,3 @@ class DrawingError(TrackError):
         super().__init__(text)
         self.picture = picture
         self.marks = marks or []
-
-
-@dataclass(frozen=True)
-class Fault:
-    """The error of one interpretation of a drawing: its kind, a sentence, places."""
-
-    kind: str  # "blank", "open" or "crossing"
-    text: str
-    marks: tuple[Mark, ...] = ()
