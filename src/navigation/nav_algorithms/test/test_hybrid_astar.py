@@ -8,18 +8,20 @@ from defaults import of
 
 from nav_algorithms.costmap import footprint
 from nav_algorithms.costmap.costs import LETHAL, UNKNOWN, Costmap
+from nav_algorithms.costmap.footprint import Ground
 from nav_algorithms.global_planning import hybrid_astar
-from nav_algorithms.global_planning.drives import (
+from nav_algorithms.global_planning.analytic_expansion import free_way, shoot
+from nav_algorithms.global_planning.hybrid_astar import HybridAstarSettings
+from nav_algorithms.global_planning.motion_primitives import (
     DRIVE,
     REVERSE,
     TURN,
     TURNING,
+    Vehicle,
     change_cost,
     cost_of,
 )
-from nav_algorithms.global_planning.hybrid_astar import HybridAstarSettings
-from nav_algorithms.global_planning.shots import free_way, shoot
-from nav_algorithms.local_planning.pieces import cut
+from nav_algorithms.local_planning.path_segments import cut
 from nav_algorithms.poses import wrap_angle
 
 CAR = np.array([[-0.1, -0.15], [-0.1, 0.15], [0.45, 0.15], [0.45, -0.15]])
@@ -196,7 +198,7 @@ def test_the_cost_of_free_ground_is_its_length_by_what_each_drive_weighs():
 
     def to(*goal, radius=1.0, reverse=True, turns=False):
         goal = np.array([*goal, 9.0])[:3]  # what lies behind is not read
-        return free_way(np.zeros(3), goal, radius, reverse, turns, terms)
+        return free_way(Vehicle(radius, reverse, turns, True, terms), np.zeros(3), goal)
 
     assert to(5.0, 0.0, 0.0) == pytest.approx(5.0)
     assert to(-5.0, 0.0, 0.0) == pytest.approx(10.0)
@@ -216,11 +218,12 @@ def test_the_last_stretch_on_free_ground_costs_what_its_cheapest_drive_does(goal
 
     BACK is 0.5 m back to the right, 6 m straight back, and 0.4 m back to the right.
     """
-    terms = np.array([3.0, 2.0, 4.0, 5.0, 6.0, 7.0])  # as in `drives`
+    terms = np.array([3.0, 2.0, 4.0, 5.0, 6.0, 7.0])  # as in `motion_primitives`
     cells, found = np.zeros((400, 400), np.uint8), np.empty((5, 3))
+    ground = Ground(cells, 0.05, -10.0, -10.0, np.full((400, 400), 99.0), 0.2, WAFFLE)
+    vehicle = Vehicle(radius, reverse, turns, True, terms)
     for limit, expected in ((99.0, cost), (cost - 0.1, np.inf)):
-        assert shoot(cells, 0.05, -10.0, -10.0, np.full((400, 400), 99.0), 0.2, WAFFLE, True, terms,
-                     np.zeros(3), np.array(goal), radius, reverse, turns, DRIVE, 1.0, 0.0, limit,
+        assert shoot(ground, vehicle, np.zeros(3), np.array(goal), DRIVE, 1.0, 0.0, limit,
                      found) == pytest.approx(expected)
 
 
@@ -241,12 +244,15 @@ def test_cusps_and_the_wheel_cost_between_drives_alone():
 @pytest.mark.parametrize("cell, factor", [(0, 1.0), (126, 1 + 3 * 0.5)])
 def test_the_cost_of_a_piece_is_its_length_by_what_it_weighs(kind, amount, curvature, cost, cell,
                                                              factor):
-    terms = np.array([3.0, 2.0, 4.0, 5.0, 6.0, 7.0])  # as in `drives`; cells count by 252
+    terms = np.array([3.0, 2.0, 4.0, 5.0, 6.0, 7.0])  # cells count by 252
     cells, radii = np.full((99, 40), cell, np.uint8)[:60], np.full((99, 40), 99.0)[:60]
 
+    ground = Ground(cells, 0.05, -1.0, -1.5, radii, 0.2, WAFFLE)
+    vehicle = Vehicle(1.0, True, True, True, terms)
+
     def of_piece(x, y):
-        return cost_of(cells, 0.05, -1.0, -1.5, radii, 0.2, WAFFLE, True, terms,
-                       np.array([x, y, np.pi / 2]), kind, amount, curvature, np.empty(3))
+        return cost_of(ground, vehicle, np.array([x, y, np.pi / 2]), kind, amount, curvature,
+                       np.empty(3))
 
     assert of_piece(0.0, 0.0) == pytest.approx(cost * factor)
     for x, y in ((-1.1, 0.0), (1.1, 0.0), (0.0, -2.1), (0.0, 2.1)):

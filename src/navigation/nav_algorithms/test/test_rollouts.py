@@ -5,12 +5,17 @@ import pytest
 from defaults import of
 
 from nav_algorithms.costmap.costs import LETHAL, Costmap
+from nav_algorithms.costmap.footprint import Ground
 from nav_algorithms.local_planning import rollout
 from nav_algorithms.local_planning.dwa import DwaPlanner, DwaSettings
 from nav_algorithms.local_planning.following import Following
 from nav_algorithms.local_planning.free_arcs import arc_of, free_arc, space
 from nav_algorithms.local_planning.grids import distances_to
-from nav_algorithms.local_planning.trajectory_rollout import TrajectoryRolloutSettings, _Scorer
+from nav_algorithms.local_planning.trajectory_rollout import (
+    NO_GROWTH,
+    TrajectoryRolloutSettings,
+    _Scorer,
+)
 
 SQUARE = np.array([[0.1, 0.1], [-0.1, 0.1], [-0.1, -0.1], [0.1, -0.1]])
 STILL = np.zeros(3)
@@ -25,10 +30,12 @@ def rolled(costmap, path_grid, sample, goal_range=9.0, outline=SQUARE,
            forward=0.0):
     """Of one drive of a second from the origin, in 10 steps."""
     grids = np.stack([path_grid, np.zeros((40, 40)), np.zeros((40, 40))])
-    return rollout.rollouts(
-        costmap.cells, costmap.resolution, *costmap.origin, np.full((40, 40), 99.0), 0.2, outline,
-        grids, np.array([1.0, 0.0, 0.0, 0.0]), np.array([sample], float), STILL, STILL,
-        np.full(3, 9.0), True, 1.0, 0.1, 0.1, forward, goal_range, 0.0, np.inf, 0.0, 0.0)[0]
+    ground = Ground(costmap.cells, costmap.resolution, *costmap.origin, np.full((40, 40), 99.0),
+                    0.2, outline)
+    motion = rollout.Motion(np.full(3, 9.0), True, 1.0, 0.1, 0.1, 0.0)
+    scoring = rollout.Scoring(grids, np.array([1.0, 0.0, 0.0, 0.0]), forward, goal_range)
+    return rollout.rollouts(ground, motion, scoring, NO_GROWTH, np.array([sample], float), STILL,
+                            STILL)[0]
 
 
 def test_beside_what_cannot_be_reached_a_cell_s_own_value_counts():

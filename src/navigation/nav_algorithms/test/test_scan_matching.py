@@ -5,7 +5,7 @@ import pytest
 
 from nav_algorithms.beam_walls import ALONG, holds
 from nav_algorithms.hit_maps import HitMaps
-from nav_algorithms.proposals import propose
+from nav_algorithms.proposals import Matching, Odometry, propose
 from nav_algorithms.scan_matching import _wall_near, evaluate, prior_cost, refine, search
 
 CORNER = np.vstack([np.column_stack((np.full(120, 2.0), np.linspace(-3, 1, 120))),
@@ -122,22 +122,22 @@ def test_a_match_worse_than_the_odometry_is_not_believed():
     maps = HitMaps(1, 0.05, (-5, -5), (5, 5))
     points = CORNER + 0.03  # within the cells, of which the search takes the first
     maps.add(np.zeros((1, 3)), points)
-    prior, matched = maps.in_cells(np.zeros((1, 3))), np.empty((1, 3))
-    drawn, factors = prior.copy(), np.empty((1, 3, 3))
-    propose(maps.tables, maps.pool, beams_of(points), prior, drawn, 0.0 * LOOSE[None],
-            np.zeros((1, 3)), np.array([1, 1, 0]), np.array([0.5, 0.5, 1.0]), 1, 0, 1, WIDTHS, 1.0,
-            1, np.empty(1), matched, factors)
+    prior = maps.in_cells(np.zeros((1, 3)))
+    drawn, _, matched, _ = propose(
+        maps.tables, maps.pool, beams_of(points),
+        Odometry(prior, 0.0 * LOOSE[None], prior.copy(), np.zeros((1, 3))),
+        Matching(np.array([1, 1, 0]), np.array([0.5, 0.5, 1.0]), 1, 0, 1, WIDTHS, 1, 1.0))
     assert matched[0].tolist() == prior[0].tolist() == drawn[0].tolist()
 
 
 def test_a_scan_that_fits_too_little_leaves_the_odometry_s_draw():
     maps, off = corner_map(), np.array([[0.04, 0.0, 0.0]])
-    prior, matched = maps.in_cells(off), np.empty((1, 3))
+    prior = maps.in_cells(off)
     for fewest, stays in ((100.0, False), (1000.0, True)):
-        drawn, factors = prior + 0.3, np.empty((1, 3, 3))
-        propose(maps.tables, maps.pool, beams_of(CORNER), prior, drawn, LOOSE[None],
-                np.zeros((1, 3)), np.array([0, 0, 0]), np.array([0.5, 0.5, 1.0]), 1, 15, 1, WIDTHS,
-                fewest, 1, np.empty(1), matched, factors)
+        drawn, _, matched, factors = propose(
+            maps.tables, maps.pool, beams_of(CORNER),
+            Odometry(prior, LOOSE[None], prior + 0.3, np.zeros((1, 3))),
+            Matching(np.zeros(3, np.int64), np.array([0.5, 0.5, 1.0]), 1, 15, 1, WIDTHS, 1, fewest))
         assert (drawn == (prior + 0.3 if stays else matched)).all()
         assert (matched == drawn).all() and (not factors.any()) == stays
 

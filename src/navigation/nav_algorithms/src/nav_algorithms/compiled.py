@@ -11,18 +11,21 @@ from pathlib import Path
 
 import numba
 from numba.core import caching
+from numba.core.typing import Signature
 
 PACKAGE = Path(__file__).parent
 INSTALLED = "dist-packages"  # the folder of Python modules in an install space
 OURS = re.compile(rf"^from {PACKAGE.name}(?:\.([\w.]+))? import (\([^)]*\)|.*)", re.MULTILINE)
 
 
-def compiled(signature: str) -> Callable[[Callable], Callable]:
+def compiled(signature: str | Signature) -> Callable[[Callable], Callable]:
     """Decorator: compiles for one signature at import and caches next to the source of a checkout.
 
-    `signature` is Numba's, such as "f8(f8[:,::1], i8)". The first import compiles, later ones load
-    the cache: a node that compiled at its first scan would miss many scans. The GIL is released
-    while the code runs. No fast-math and no threads: the same input gives the same bits.
+    `signature` is Numba's, such as "f8(f8[:,::1], i8)", or of types, such as f8(GROUND, i8), for
+    functions with a NamedTuple; GROUND is then `numba.typeof` of an example. The first import
+    compiles, later ones load the cache: a node that compiled at its first scan would miss many
+    scans. The GIL is released while the code runs. No fast-math and no threads: the same input
+    gives the same bits.
     """
     def compile_one(function: Callable) -> Callable:
         usual = numba.config.CACHE_LOCATOR_CLASSES

@@ -18,7 +18,7 @@ from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.hit_maps import HitMaps
 from nav_algorithms.map_rendering import MapRendering
 from nav_algorithms.pose_tree import PoseTree
-from nav_algorithms.proposals import propose
+from nav_algorithms.proposals import Matching, Odometry, propose
 from nav_algorithms.slam_motion import StepSum
 
 SEARCHED = 2.5     # standard deviations of the odometry, to either side, that a search covers
@@ -170,14 +170,15 @@ class ParticleSlam:
         settings, maps, count = self.settings, self._maps, len(self._poses)
         noise = np.linalg.cholesky(self._step.covariance)
         steps = self._step.mean + self._random.normal(size=(count, 3)) @ noise.T
-        moved = maps.in_cells(pose_arithmetic.compose(self._poses, steps))
+        drawn = maps.in_cells(pose_arithmetic.compose(self._poses, steps))
         priors = maps.in_cells(pose_arithmetic.compose(self._poses, self._step.mean))
-        likelihoods, matched, factors = np.zeros(count), priors.copy(), np.zeros((count, 3, 3))
-        propose(maps.tables, maps.pool, np.hstack((hits / settings.delta, held)), priors,
-                moved, self._informations(), self._random.normal(size=(count, 3)),
-                *self._search_grid(), max(1, len(hits) // SEARCH_BEAMS), settings.iterations,
-                settings.kernelSize, self._widths, settings.minimumScore, settings.lskip + 1,
-                likelihoods, matched, factors)
+        odometry = Odometry(priors, self._informations(), drawn,
+                            self._random.normal(size=(count, 3)))
+        matching = Matching(*self._search_grid(), max(1, len(hits) // SEARCH_BEAMS),
+                            settings.iterations, settings.kernelSize, self._widths,
+                            settings.lskip + 1, float(settings.minimumScore))
+        moved, likelihoods, matched, factors = propose(
+            maps.tables, maps.pool, np.hstack((hits / settings.delta, held)), odometry, matching)
         self._learn_odometry(matched - priors, factors)
         moved[:, :2] = moved[:, :2] * settings.delta + maps.origin
         moved[:, 2] = pose_arithmetic.wrap_angle(moved[:, 2])

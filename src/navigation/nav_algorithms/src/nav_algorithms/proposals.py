@@ -7,41 +7,70 @@ matrix at the matched pose, whereas they sample poses around it. Units as in sca
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numba
 import numpy as np
+from numba import f4, f8, i4
+from numba.types import Tuple
 
 from nav_algorithms.compiled import compiled
 from nav_algorithms.scan_matching import evaluate, refine, search
 from nav_algorithms.small_matrices import cholesky, solve_backwards
 
 
-@compiled("void(i4[:,:,::1], f4[:,:,:,::1], f8[:,::1], f8[:,::1], f8[:,::1], f8[:,:,::1],"
-          "f8[:,::1], i8[::1], f8[::1], i8, i8, i8, f8[::1], f8, i8, f8[::1], f8[:,::1],"
-          "f8[:,:,::1])")
-def propose(tables: np.ndarray, pool: np.ndarray, beams: np.ndarray, priors: np.ndarray,
-            drawn: np.ndarray, informations: np.ndarray, normals: np.ndarray, halves: np.ndarray,
-            steps: np.ndarray, stride: int, iterations: int, kernel: int, widths: np.ndarray,
-            fewest: float, skip: int, likelihoods: np.ndarray, matched: np.ndarray,
-            factors: np.ndarray) -> None:
-    """Moves particles (N): `drawn` (N, 3) become draws from the posterior of odometry and scan.
+class Odometry(NamedTuple):
+    """What the odometry tells of N particles, in cells and rad."""
 
-    They are draws from the odometry before, and stay so if the best score is below `fewest`.
-    `priors` (N, 3) and `informations` (N, 3, 3) are the odometry's Gaussian, `normals` (N, 3)
-    standard normal draws; `halves`, `steps` and `stride` are the search's, `kernel`, `widths` and
-    `skip` the evaluation's. `likelihoods` (N,) become the log likelihoods of the matched poses,
-    `matched` (N, 3) those poses, and `factors` (N, 3, 3) the Cholesky factors of the information
-    of the draw; 0 if nothing matched.
+    priors: np.ndarray        # (N, 3), the middles of its Gaussians
+    informations: np.ndarray  # (N, 3, 3)
+    drawn: np.ndarray         # (N, 3), draws from them
+    normals: np.ndarray       # (N, 3), standard normal draws for the posterior
+
+
+class Matching(NamedTuple):
+    """How scans are matched, as in scan_matching."""
+
+    halves: np.ndarray  # (3,) int64, of the search, as `steps` and `stride`; 0: no search
+    steps: np.ndarray   # (3,)
+    stride: int
+    iterations: int     # of the refinement
+    kernel: int         # of the evaluation, as `widths` and `skip`
+    widths: np.ndarray  # (3,)
+    skip: int
+    fewest: float       # the score below which the odometry is believed
+
+
+ODOMETRY = numba.typeof(Odometry(*[np.zeros((1,) * n) for n in (2, 3, 2, 2)]))
+MATCHING = numba.typeof(Matching(np.zeros(3, np.int64), np.zeros(3), 1, 1, 1, np.zeros(3), 1, 1.0))
+
+
+@compiled(Tuple((f8[:, ::1], f8[::1], f8[:, ::1], f8[:, :, ::1]))(
+    i4[:, :, ::1], f4[:, :, :, ::1], f8[:, ::1], ODOMETRY, MATCHING))
+def propose(tables: np.ndarray, pool: np.ndarray, beams: np.ndarray, odometry: Odometry,
+            matching: Matching) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Draws (N, 3) of particles from the posterior of odometry and scan, and how they came about.
+
+    Those are the log likelihoods (N,) of the matched poses, these poses (N, 3), and the Cholesky
+    factors (N, 3, 3) of the draws' information. A particle whose best score is below `fewest` keeps
+    the odometry's draw; its factor is 0.
     """
+    priors, kernel, widths = odometry.priors, matching.kernel, matching.widths
+    moved, likelihoods = np.empty_like(priors), np.empty(len(priors))
+    matched, factors = np.empty_like(priors), np.zeros((len(priors), 3, 3))
     hessian = np.empty((3, 3))
     pose, from_prior, gradient, offset = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-    searching = halves.max() > 0
+    searching = matching.halves.max() > 0
     for i in range(len(priors)):
-        table, prior, information, lower = tables[i], priors[i], informations[i], factors[i]
+        table, prior, information, lower = (tables[i], priors[i], odometry.informations[i],
+                                            factors[i])
         if searching:
-            search(table, pool, beams, prior, information, halves, steps, stride, pose)
+            search(table, pool, beams, prior, information, matching.halves, matching.steps,
+                   matching.stride, pose)
         else:
             pose[:] = prior
-        found, score = refine(table, pool, beams, prior, information, pose, iterations, kernel,
-                              widths, lower)
+        found, score = refine(table, pool, beams, prior, information, pose,
+                              matching.iterations, kernel, widths, lower)
         from_prior[:] = prior
         # Never worse than trusting the odometry.
         staying, there = evaluate(table, pool, beams, from_prior, kernel, 1, widths, hessian,
@@ -51,14 +80,15 @@ def propose(tables: np.ndarray, pool: np.ndarray, beams: np.ndarray, priors: np.
             if cholesky(hessian, lower):
                 pose[:] = prior
                 score = there
-        if score < max(fewest, 1.0):
-            pose[:] = drawn[i]
+        if score < max(matching.fewest, 1.0):
+            pose[:] = odometry.drawn[i]
             offset[:] = 0.0
             lower[:] = 0.0
         else:
-            offset[:] = normals[i]
+            offset[:] = odometry.normals[i]
             solve_backwards(lower, offset)
-        likelihoods[i], score = evaluate(table, pool, beams, pose, kernel, skip, widths, hessian,
-                                           gradient)
+        likelihoods[i], score = evaluate(table, pool, beams, pose, kernel, matching.skip, widths,
+                                         hessian, gradient)
         matched[i] = pose
-        drawn[i] = pose + offset
+        moved[i] = pose + offset
+    return moved, likelihoods, matched, factors

@@ -7,6 +7,9 @@ three corners mean a round robot, as large as the costmap's inscribed radius.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numba
 import numpy as np
 
 from nav_algorithms import likelihood_field
@@ -61,6 +64,28 @@ def free_radii(costmap: Costmap) -> np.ndarray:
     rows, columns = (np.arange(size) + 0.5 for size in shut.shape)
     edge = np.minimum.outer(np.minimum(rows, rows[::-1]), np.minimum(columns, columns[::-1]))
     return np.minimum(likelihood_field.distances(shut.view(np.uint8)), edge)
+
+
+class Ground(NamedTuple):
+    """A costmap and a footprint for compiled code that tests many poses."""
+
+    cells: np.ndarray       # uint8 (rows, columns)
+    resolution: float       # m
+    origin_x: float         # m, of the corner of cell (0, 0)
+    origin_y: float
+    free_radii: np.ndarray  # (rows, columns), cells: the distance from cells not to be touched
+    circumscribed: float    # m: with a larger free radius the footprint need not be tested
+    footprint: np.ndarray   # (K, 2), m
+
+    @classmethod
+    def of(cls, costmap: Costmap, radii: np.ndarray, footprint: np.ndarray) -> Ground:
+        """`radii`: those that `free_radii` returns, maybe of a costmap without unknown cells."""
+        return cls(costmap.cells, float(costmap.resolution), *map(float, costmap.origin), radii,
+                   reach(footprint), footprint)
+
+
+GROUND = numba.typeof(Ground(np.zeros((1, 1), np.uint8), 1.0, 0.0, 0.0, np.zeros((1, 1)), 1.0,
+                             np.zeros((3, 2))))
 
 
 def costs(costmap: Costmap, footprint: np.ndarray, poses: np.ndarray) -> np.ndarray:

@@ -1,20 +1,24 @@
-"""Shots to the goal: a curve that ends exactly there, if nothing is in the way."""
+"""The analytic expansion of hybrid A*: a curve that ends exactly at the goal, if it is free."""
 
 from __future__ import annotations
 
 import numpy as np
+from numba import f8, i8
 
 from nav_algorithms.compiled import compiled
-from nav_algorithms.global_planning.curves import PIECES, WORDS, dubins, reeds_shepp
-from nav_algorithms.global_planning.drives import (
+from nav_algorithms.costmap.footprint import GROUND, Ground
+from nav_algorithms.global_planning.motion_primitives import (
     CURVING,
     DRIVE,
     REVERSE,
     TURN,
     TURNING,
+    VEHICLE,
+    Vehicle,
     change_cost,
     cost_of,
 )
+from nav_algorithms.global_planning.reeds_shepp import PIECES, WORDS, dubins, reeds_shepp
 
 TRIED = 4  # curves that are checked on the costmap, the cheapest first
 
@@ -65,11 +69,11 @@ def _free_cost(word, terms, kind, amount, curvature):
     return cost
 
 
-@compiled("f8(f8[::1], f8[::1], f8, b1, b1, f8[::1])")
-def free_way(pose, goal, radius, reverse, turns, terms):
+@compiled(f8(VEHICLE, f8[::1], f8[::1]))
+def free_way(vehicle: Vehicle, pose, goal):
     """The lowest cost from pose to goal on free ground, without cusps and changes of curvature."""
-    words = np.empty((WORDS, PIECES, 3))
-    count = _curves(words, pose, goal, radius, reverse, turns)
+    words, terms = np.empty((WORDS, PIECES, 3)), vehicle.terms
+    count = _curves(words, pose, goal, vehicle.radius, vehicle.reverse, vehicle.turns)
     best = np.inf
     for n in range(count):
         length = 0.0
@@ -81,18 +85,15 @@ def free_way(pose, goal, radius, reverse, turns, terms):
     return best
 
 
-@compiled("f8(u1[:,::1], f8, f8, f8, f8[:,::1], f8, f8[:,::1], b1, f8[::1], f8[::1], f8[::1], f8, "
-          "b1, b1, i8, f8, f8, f8, f8[:,::1])")
-def shoot(cells, resolution, origin_x, origin_y, free_radii, circumscribed, footprint,
-          allow_unknown, terms, pose, goal, radius, reverse, turns, kind, amount, curvature, limit,
-          found):
+@compiled(f8(GROUND, VEHICLE, f8[::1], f8[::1], i8, f8, f8, f8, f8[:,::1]))
+def shoot(ground: Ground, vehicle: Vehicle, pose, goal, kind, amount, curvature, limit, found):
     """Cost of the cheapest free way to the goal below `limit`, of the TRIED most promising ones.
 
     `found` (PIECES, 3) gets its pieces; (kind, amount, curvature) is the piece that ends at `pose`.
     inf if there is none.
     """
-    words = np.empty((WORDS, PIECES, 3))
-    count = _curves(words, pose, goal, radius, reverse, turns)
+    words, terms = np.empty((WORDS, PIECES, 3)), vehicle.terms
+    count = _curves(words, pose, goal, vehicle.radius, vehicle.reverse, vehicle.turns)
     expected = np.empty(count)
     for n in range(count):
         expected[n] = _free_cost(words[n], terms, kind, amount, curvature)
@@ -111,8 +112,7 @@ def shoot(cells, resolution, origin_x, origin_y, free_radii, circumscribed, foot
                 continue
             cost += change_cost(terms, last_kind, last_amount, last_curvature, next_kind, size,
                                 bend)
-            cost += cost_of(cells, resolution, origin_x, origin_y, free_radii, circumscribed,
-                            footprint, allow_unknown, terms, at, next_kind, size, bend, after)
+            cost += cost_of(ground, vehicle, at, next_kind, size, bend, after)
             if cost >= best:
                 break
             at[:] = after

@@ -14,9 +14,10 @@ import numpy as np
 
 from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
-from nav_algorithms.global_planning.drives import move, steps_of
+from nav_algorithms.costmap.footprint import Ground
+from nav_algorithms.global_planning.motion_primitives import Vehicle, move, steps_of
 from nav_algorithms.global_planning.potential import spread_everywhere
-from nav_algorithms.global_planning.search import search
+from nav_algorithms.global_planning.search import SearchLimits, search
 
 TIGHT = 20.0  # cost, in free cells, of a cell within the inscribed radius, in the heuristic
 LARGE = 1_000_000  # cells; on a larger map, a path near start and goal is searched for first
@@ -88,15 +89,15 @@ def _plan_on(costmap: Costmap, start: np.ndarray, goal: np.ndarray, footprint: n
     estimate = _estimate(costmap, goal, s)
     if not np.isfinite(estimate[tuple(costmap.cells_of(start[:2]))]):
         return None
-    radii = footprints.free_radii(_known(costmap, settings))
-    terms = np.array([s.cost_penalty, s.reverse_penalty, s.cusp_penalty, s.curvature_penalty,
-                      s.swerve_penalty, s.turn_penalty])
-    pieces = search(costmap.cells, costmap.resolution, *map(float, costmap.origin), radii,
-                    footprints.reach(footprint), footprint, s.allow_unknown, terms, estimate,
-                    start, goal, s.minimum_turning_radius, s.allow_reverse, s.turn_in_place,
-                    max(s.state_resolution, costmap.resolution), s.yaw_bins,
-                    max(s.primitive_length, 1.45 * costmap.resolution), s.max_expansions,
-                    s.improve_expansions)
+    ground = Ground.of(costmap, footprints.free_radii(_known(costmap, settings)), footprint)
+    vehicle = Vehicle(float(s.minimum_turning_radius), s.allow_reverse, s.turn_in_place,
+                      s.allow_unknown,
+                      np.array([s.cost_penalty, s.reverse_penalty, s.cusp_penalty,
+                                s.curvature_penalty, s.swerve_penalty, s.turn_penalty], float))
+    limits = SearchLimits(float(max(s.state_resolution, costmap.resolution)), s.yaw_bins,
+                          float(max(s.primitive_length, 1.45 * costmap.resolution)),
+                          s.max_expansions, s.improve_expansions)
+    pieces = search(ground, vehicle, estimate, start, goal, limits)
     return _driven(start, goal, pieces, costmap.resolution) if len(pieces) else None
 
 

@@ -6,16 +6,33 @@ A piece is (kind, amount, curvature): DRIVE by `amount`, m, negative backwards, 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numba
 import numpy as np
+from numba import f8, i8
 
 from nav_algorithms.compiled import compiled
 from nav_algorithms.costmap.costs import UNKNOWN
-from nav_algorithms.costmap.footprint import ON_UNKNOWN, cost_at
+from nav_algorithms.costmap.footprint import GROUND, ON_UNKNOWN, Ground, cost_at
 
 DRIVE, TURN = 0, 1
 TURN_STEP = 0.09  # rad between two checks; 0.33 m from the centre this is less than a cell
 # Indices of `terms`, the cost factors, in metres of free road driven forwards.
 COSTLY, REVERSE, CUSP, CURVING, SWERVING, TURNING = range(6)
+
+
+class Vehicle(NamedTuple):
+    """How a vehicle may drive, and what that costs."""
+
+    radius: float  # m, the smallest of its turns
+    reverse: bool  # it may drive backwards
+    turns: bool    # it turns on the spot instead of driving curves
+    allow_unknown: bool  # it may drive over unknown cells
+    terms: np.ndarray    # (6,), the cost factors
+
+
+VEHICLE = numba.typeof(Vehicle(1.0, True, True, True, np.zeros(6)))
 
 
 @compiled("void(f8[::1], i8, f8, f8, f8[::1])")
@@ -40,13 +57,13 @@ def steps_of(kind, amount, step):
     return max(int(np.ceil(abs(amount) / (TURN_STEP if kind == TURN else step) - 1e-9)), 1)
 
 
-@compiled("f8(u1[:,::1], f8, f8, f8, f8[:,::1], f8, f8[:,::1], b1, f8[::1], f8[::1], i8, f8, f8, "
-          "f8[::1])")
-def cost_of(cells, resolution, origin_x, origin_y, free_radii, circumscribed, footprint,
-            allow_unknown, terms, pose, kind, amount, curvature, found):
+@compiled(f8(GROUND, VEHICLE, f8[::1], i8, f8, f8, f8[::1]))
+def cost_of(ground: Ground, vehicle: Vehicle, pose, kind, amount, curvature, found):
     """The cost of a piece from `pose`; `found` (3,) becomes its end; inf if it collides."""
+    cells, resolution, terms = ground.cells, ground.resolution, vehicle.terms
+    origin_x, origin_y, free_radii = ground.origin_x, ground.origin_y, ground.free_radii
     steps = steps_of(kind, amount, resolution)
-    clear = circumscribed / resolution + 1.5
+    clear = ground.circumscribed / resolution + 1.5
     dear = 0.0
     for n in range(1, steps + 1):
         move(pose, kind, amount * n / steps, curvature, found)
@@ -55,9 +72,9 @@ def cost_of(cells, resolution, origin_x, origin_y, free_radii, circumscribed, fo
             return np.inf
         r, c = int(row), int(column)
         if free_radii[r, c] <= clear:
-            cost = cost_at(cells, resolution, origin_x, origin_y, footprint, found[0], found[1],
-                           found[2])
-            if cost < 0 and not (cost == ON_UNKNOWN and allow_unknown):
+            cost = cost_at(cells, resolution, origin_x, origin_y, ground.footprint, found[0],
+                           found[1], found[2])
+            if cost < 0 and not (cost == ON_UNKNOWN and vehicle.allow_unknown):
                 return np.inf
         dear += (0.0 if cells[r, c] == UNKNOWN else cells[r, c]) / 252.0
     length = abs(amount) * (terms[TURNING] if kind == TURN else 1.0)

@@ -2,17 +2,42 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numba
 import numpy as np
+from numba import f8
 
 from nav_algorithms.compiled import compiled
-from nav_algorithms.global_planning.curves import PIECES
-from nav_algorithms.global_planning.drives import DRIVE, TURN, change_cost, cost_of
+from nav_algorithms.costmap.footprint import GROUND, Ground
+from nav_algorithms.global_planning.analytic_expansion import free_way, shoot
 from nav_algorithms.global_planning.heap import pop, push
-from nav_algorithms.global_planning.shots import free_way, shoot
+from nav_algorithms.global_planning.motion_primitives import (
+    DRIVE,
+    TURN,
+    VEHICLE,
+    Vehicle,
+    change_cost,
+    cost_of,
+)
+from nav_algorithms.global_planning.reeds_shepp import PIECES
 
 BENDS = 5           # curvatures from full lock to full lock
 SPOT_TURN = 0.2618  # rad, 15 degrees
 NEAR = 6.0          # turning radii within which the heuristic uses the free curve's length
+
+
+class SearchLimits(NamedTuple):
+    """How fine and how long a search is."""
+
+    state_resolution: float  # m, of the cells of poses
+    yaw_bins: int            # of the same, on the full circle
+    length: float            # m, of one piece
+    max_expansions: int
+    improve_expansions: int  # after the first path was found
+
+
+LIMITS = numba.typeof(SearchLimits(1.0, 1, 1.0, 1, 1))
 
 
 @compiled("i8(f8, b1, b1, f8, f8[:,::1])")
@@ -63,21 +88,21 @@ def _state(pose, origin_x, origin_y, state_resolution, rows, columns, yaw_bins):
     return (row * columns + column) * yaw_bins + int(turn * yaw_bins) % yaw_bins
 
 
-@compiled("f8[:,::1](u1[:,::1], f8, f8, f8, f8[:,::1], f8, f8[:,::1], b1, f8[::1], f8[:,::1], "
-          "f8[::1], f8[::1], f8, b1, b1, f8, i8, f8, i8, i8)")
-def search(cells, resolution, origin_x, origin_y, free_radii, circumscribed, footprint,
-           allow_unknown, terms, estimate, start, goal, radius, reverse, turns, state_resolution,
-           yaw_bins, length, max_expansions, improve_expansions):
-    """Pieces (M, 3) from start to goal, see `drives`; empty if no path was found.
+@compiled(f8[:, ::1](GROUND, VEHICLE, f8[:, ::1], f8[::1], f8[::1], LIMITS))
+def search(ground: Ground, vehicle: Vehicle, estimate, start, goal, limits: SearchLimits):
+    """Pieces (M, 3) from start to goal, see `motion_primitives`; empty if no path was found.
 
-    `estimate` (rows, columns) is the remaining cost for a point; `state_resolution`, m, and
-    `yaw_bins` define the cells of poses. A node is x, y, yaw, cost, and the piece that led to it.
+    `estimate` (rows, columns) is the remaining cost for a point. A node is x, y, yaw, cost, and the
+    piece that led to it.
     """
-    rows = int(np.ceil(cells.shape[0] * resolution / state_resolution))
-    columns = int(np.ceil(cells.shape[1] * resolution / state_resolution))
+    resolution, origin_x, origin_y = ground.resolution, ground.origin_x, ground.origin_y
+    radius, terms = vehicle.radius, vehicle.terms
+    state_resolution, yaw_bins = limits.state_resolution, limits.yaw_bins
+    rows = int(np.ceil(ground.cells.shape[0] * resolution / state_resolution))
+    columns = int(np.ceil(ground.cells.shape[1] * resolution / state_resolution))
     primitives = np.empty((12, 3))
-    branching = _primitives(radius, reverse, turns, length, primitives)
-    room = max_expansions * branching + 2
+    branching = _primitives(radius, vehicle.reverse, vehicle.turns, limits.length, primitives)
+    room = limits.max_expansions * branching + 2
     nodes, parents = np.empty((room, 7)), np.empty(room, np.int64)
     keys, items = np.empty(room), np.empty(room, np.int64)
     best_at = np.zeros(rows * columns * yaw_bins, np.int64)  # node + 1; 0: none yet
@@ -88,7 +113,7 @@ def search(cells, resolution, origin_x, origin_y, free_radii, circumscribed, foo
     made, count = 1, push(keys, items, 0, 0.0, 0)
     goal_cost, goal_node = np.inf, -1
     end = np.empty(3)
-    expanded, until, next_shot = 0, max_expansions, 0
+    expanded, until, next_shot = 0, limits.max_expansions, 0
     while count > 0 and expanded < until:
         key, node = keys[0], items[0]
         count = pop(keys, items, count)
@@ -103,13 +128,11 @@ def search(cells, resolution, origin_x, origin_y, free_radii, circumscribed, foo
         left = key - nodes[node, 3]
         if expanded >= next_shot:
             next_shot = expanded + 1 + int(min(left / (2.0 * radius), 40.0) * 2.0)
-            cost = nodes[node, 3] + shoot(
-                cells, resolution, origin_x, origin_y, free_radii, circumscribed, footprint,
-                allow_unknown, terms, here, goal, radius, reverse, turns, kind, amount, bend,
-                goal_cost - nodes[node, 3], shot)
+            cost = nodes[node, 3] + shoot(ground, vehicle, here, goal, kind, amount, bend,
+                                          goal_cost - nodes[node, 3], shot)
             if cost < goal_cost:
                 if goal_node < 0:
-                    until = min(until, expanded + improve_expansions)
+                    until = min(until, expanded + limits.improve_expansions)
                 goal_cost, goal_node = cost, node
                 best_shot[:] = shot
         for n in range(branching):
@@ -117,8 +140,7 @@ def search(cells, resolution, origin_x, origin_y, free_radii, circumscribed, foo
                                           primitives[n, 2])
             cost = nodes[node, 3] + change_cost(terms, kind, amount, bend, next_kind, size,
                                                 next_bend)
-            cost += cost_of(cells, resolution, origin_x, origin_y, free_radii, circumscribed,
-                            footprint, allow_unknown, terms, here, next_kind, size, next_bend, end)
+            cost += cost_of(ground, vehicle, here, next_kind, size, next_bend, end)
             if cost >= goal_cost or cost == np.inf:
                 continue
             state = _state(end, origin_x, origin_y, state_resolution, rows, columns, yaw_bins)
@@ -127,7 +149,7 @@ def search(cells, resolution, origin_x, origin_y, free_radii, circumscribed, foo
             remaining = estimate[int((end[1] - origin_y) / resolution),
                                  int((end[0] - origin_x) / resolution)]
             if np.hypot(goal[0] - end[0], goal[1] - end[1]) < NEAR * radius:
-                remaining = max(remaining, free_way(end, goal, radius, reverse, turns, terms))
+                remaining = max(remaining, free_way(vehicle, end, goal))
             if cost + remaining >= goal_cost:
                 continue
             nodes[made, :3] = end

@@ -12,6 +12,7 @@ import numpy as np
 
 from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import Costmap
+from nav_algorithms.costmap.footprint import Ground
 from nav_algorithms.local_planning import rollout
 from nav_algorithms.local_planning.goal import Arrival
 from nav_algorithms.local_planning.grids import distances_to
@@ -101,14 +102,13 @@ class DwaPlanner(LocalPlanner):
         samples = samples[self.oscillation.allowed(samples)]
         if not len(samples):
             return None
-        found = rollout.rollouts(
-            costmap.cells, costmap.resolution, *map(float, costmap.origin),
-            footprints.free_radii(costmap), footprints.reach(footprint), footprint,
-            self._grids(costmap, near, pose),
-            self._weights(costmap, pose, near), samples, pose, velocity, self._accelerations(),
-            s.use_dwa, s.sim_time, s.sim_granularity, s.angular_sim_granularity,
-            s.forward_point_distance, float(np.hypot(*(goal[:2] - pose[:2]))), s.stop_time_buffer,
-            s.scaling_speed, s.max_scaling_factor, s.max_vel_trans)
+        ground = Ground.of(costmap, footprints.free_radii(costmap), footprint)
+        scoring = rollout.Scoring(
+            self._grids(costmap, near, pose), self._weights(costmap, pose, near),
+            float(s.forward_point_distance), float(np.hypot(*(goal[:2] - pose[:2]))))
+        growth = rollout.Growth(float(s.scaling_speed), float(s.max_scaling_factor),
+                                float(s.max_vel_trans))
+        found = rollout.rollouts(ground, self._motion(), scoring, growth, samples, pose, velocity)
         cost = np.where(found[:, rollout.LEGAL] > 0.0, found[:, rollout.DISTANCE]
                         + s.occdist_scale * found[:, rollout.OCCUPANCY]
                         + s.twirling_scale * np.abs(samples[:, 2]), np.inf)
@@ -117,13 +117,18 @@ class DwaPlanner(LocalPlanner):
             return None
         self.oscillation.took(samples[best], pose, s.min_vel_trans)
         vx, vy, omega = map(float, samples[best])
-        return Command(vx, vy, omega, rollout.trajectory(
-            pose, velocity, samples[best], self._accelerations(), s.use_dwa, s.sim_time,
-            s.sim_granularity, s.angular_sim_granularity))
+        return Command(vx, vy, omega,
+                       rollout.trajectory(pose, velocity, samples[best], self._motion()))
+
+    def _motion(self) -> rollout.Motion:
+        s = self.settings
+        return rollout.Motion(self._accelerations(), s.use_dwa, float(s.sim_time),
+                              float(s.sim_granularity), float(s.angular_sim_granularity),
+                              float(s.stop_time_buffer))
 
     def _accelerations(self) -> np.ndarray:
         s = self.settings
-        return np.array([s.acc_lim_x, s.acc_lim_y, s.acc_lim_theta])
+        return np.array([s.acc_lim_x, s.acc_lim_y, s.acc_lim_theta], float)
 
     def samples(self, velocity: np.ndarray, to_goal: float) -> np.ndarray:
         """Velocities (S, 3) to try, for a robot with `velocity`, `to_goal`, m, from its goal.

@@ -6,7 +6,7 @@ import numpy as np
 
 from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import Costmap
-from nav_algorithms.global_planning.drives import DRIVE, move
+from nav_algorithms.global_planning.motion_primitives import DRIVE, move
 from nav_algorithms.poses import compose, relative, wrap_angle
 
 BENDS = 21  # curvatures that are tried if the wanted one is not free

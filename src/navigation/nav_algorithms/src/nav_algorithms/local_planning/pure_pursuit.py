@@ -15,7 +15,7 @@ from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.local_planning.following import STANDSTILL
 from nav_algorithms.local_planning.free_arcs import free_arc, space
 from nav_algorithms.local_planning.goal import turned
-from nav_algorithms.local_planning.pieces import ON_THE_SPOT, Piece, cut
+from nav_algorithms.local_planning.path_segments import ON_THE_SPOT, Piece, cut
 from nav_algorithms.local_planning.velocities import Command, Limits, turning
 from nav_algorithms.poses import compose, relative, wrap_angle
 

@@ -2,13 +2,50 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numba
 import numpy as np
+from numba import f8, i8
 
 from nav_algorithms.compiled import compiled
-from nav_algorithms.costmap.footprint import cost_at
+from nav_algorithms.costmap.footprint import GROUND, Ground, cost_at
 
 LEGAL, OCCUPANCY, WORST, DISTANCE, PATH, GOAL, FRONT, ALIGNMENT = range(8)
 ON_PATH = 0.5  # cells; points nearer to the path than this count as on it
+
+
+class Motion(NamedTuple):
+    """How trajectories are simulated."""
+
+    acceleration: np.ndarray  # (3,)
+    at_once: bool  # the robot has a sample's velocity from the beginning, else it accelerates
+    sim_time: float  # s
+    sim_granularity: float          # m, between two poses
+    angular_sim_granularity: float  # rad
+    stop_time: float  # s, besides braking, for which a turn on the spot has to be free
+
+
+class Scoring(NamedTuple):
+    """What trajectories are scored by."""
+
+    grids: np.ndarray    # (3, rows, columns): distances to the path, the goal, the goal's front
+    weights: np.ndarray  # (4,), of PATH, GOAL, FRONT and ALIGNMENT
+    forward: float       # m ahead of the pose for FRONT and ALIGNMENT
+    goal_range: float    # m: what goes past the goal is scored where it has gone so far
+
+
+class Growth(NamedTuple):
+    """How the footprint grows above a speed."""
+
+    scaling_speed: float       # m/s
+    max_scaling_factor: float  # at max_vel_trans
+    max_vel_trans: float       # m/s
+
+
+MOTION = numba.typeof(Motion(np.zeros(3), True, 1.0, 1.0, 1.0, 1.0))
+SCORING = numba.typeof(Scoring(np.zeros((3, 1, 1)), np.zeros(4), 1.0, 1.0))
+GROWTH = numba.typeof(Growth(1.0, 1.0, 1.0))
 
 
 @compiled("void(f8[::1], f8[::1], f8[::1], f8[::1], f8, f8[::1])")
@@ -23,27 +60,23 @@ def advance(pose, velocity, wanted, acceleration, dt, found):
     found[2] = pose[2] + velocity[2] * dt
 
 
-@compiled("i8(f8[::1], f8, f8, f8)")
-def steps_of(sample, sim_time, sim_granularity, angular_sim_granularity):
+@compiled(i8(f8[::1], MOTION))
+def steps_of(sample, motion: Motion):
     """Steps of a trajectory: each no longer than its granularity, m or rad."""
-    return max(int(np.ceil(np.hypot(sample[0], sample[1]) * sim_time / sim_granularity)),
-               int(np.ceil(abs(sample[2]) * sim_time / angular_sim_granularity)), 1)
+    return max(int(np.ceil(np.hypot(sample[0], sample[1]) * motion.sim_time
+                           / motion.sim_granularity)),
+               int(np.ceil(abs(sample[2]) * motion.sim_time / motion.angular_sim_granularity)), 1)
 
 
-@compiled("f8[:,::1](f8[::1], f8[::1], f8[::1], f8[::1], b1, f8, f8, f8)")
-def trajectory(pose, velocity, sample, acceleration, at_once, sim_time, sim_granularity,
-               angular_sim_granularity):
-    """Poses (M, 3) of one sample (vx, vy, omega), beginning with the current one.
-
-    `at_once`: the robot has the sample's velocity from the beginning; else it approaches it from
-    `velocity` with `acceleration`, (3,).
-    """
-    steps = steps_of(sample, sim_time, sim_granularity, angular_sim_granularity)
+@compiled(f8[:, ::1](f8[::1], f8[::1], f8[::1], MOTION))
+def trajectory(pose, velocity, sample, motion: Motion):
+    """Poses (M, 3) of one sample (vx, vy, omega), beginning with the current one."""
+    steps = steps_of(sample, motion)
     poses = np.empty((steps + 1, 3))
     poses[0] = pose
-    now = sample.copy() if at_once else velocity.copy()
+    now = sample.copy() if motion.at_once else velocity.copy()
     for n in range(steps):
-        advance(poses[n], now, sample, acceleration, sim_time / steps, poses[n + 1])
+        advance(poses[n], now, sample, motion.acceleration, motion.sim_time / steps, poses[n + 1])
     return poses
 
 
@@ -92,26 +125,21 @@ def _look(grids, weights, resolution, origin_x, origin_y, pose, forward, found):
             + weights[3] * found[ALIGNMENT])
 
 
-@compiled("f8[:,::1](u1[:,::1], f8, f8, f8, f8[:,::1], f8, f8[:,::1], f8[:,:,::1], f8[::1], "
-          "f8[:,::1], f8[::1], f8[::1], f8[::1], b1, f8, f8, f8, f8, f8, f8, f8, f8, f8)")
-def rollouts(cells, resolution, origin_x, origin_y, free_radii, circumscribed, footprint, grids,
-             weights, samples, pose, velocity, acceleration, at_once, sim_time, sim_granularity,
-             angular_sim_granularity, forward, goal_range, stop_time, scaling_speed,
-             max_scaling_factor, max_vel_trans):
+@compiled(f8[:, ::1](GROUND, MOTION, SCORING, GROWTH, f8[:, ::1], f8[::1], f8[::1]))
+def rollouts(ground: Ground, motion: Motion, scoring: Scoring, growth: Growth, samples, pose,
+             velocity):
     """The results of the samples (S, 3): (S, 8), with the columns named at the top of this file.
 
-    `free_radii` (rows, columns), cells: the distance of each cell from those not to be touched;
-    beyond the `circumscribed` radius, m, the footprint is not checked. `grids` (3, rows, columns):
-    distances to the path, the goal and the goal's front. LEGAL is 1, or 0 if the footprint touched
-    something. OCCUPANCY is the highest cost below the last pose, WORST below any. PATH and GOAL
-    are looked up at the last pose, FRONT and ALIGNMENT `forward`, m, ahead of it; if that point is
-    in an obstacle, they are those of the pose plus twice the way to the point. DISTANCE is the sum
-    of these four by `weights` (4,). `goal_range`, m: a trajectory that goes past the goal is scored
-    where it has gone so far. A turn on the spot can be ended anywhere: it is scored where its
-    DISTANCE is lowest among the poses where it can stand again, and only has to be free for the
-    time that it takes to brake plus `stop_time`, s. Above `scaling_speed`, m/s, the footprint
-    grows, by `max_scaling_factor` at `max_vel_trans`.
+    LEGAL is 1, or 0 if the footprint touched something. OCCUPANCY is the highest cost below the
+    last pose, WORST below any. PATH and GOAL are looked up at the last pose, FRONT and ALIGNMENT
+    ahead of it; if that point is in an obstacle, they are those of the pose plus twice the way to
+    the point. DISTANCE is the weighted sum of these four. A turn on the spot can be ended anywhere:
+    it is scored where its DISTANCE is lowest among the poses where it can stand again, and only has
+    to be free for the time that it takes to brake plus `stop_time`.
     """
+    resolution, origin_x, origin_y = ground.resolution, ground.origin_x, ground.origin_y
+    footprint, scaling_speed = ground.footprint, growth.scaling_speed
+    acceleration, sim_time = motion.acceleration, motion.sim_time
     found = np.zeros((len(samples), 8))
     poses = np.empty((2, 3))
     grown = np.empty(footprint.shape)
@@ -121,39 +149,39 @@ def rollouts(cells, resolution, origin_x, origin_y, free_radii, circumscribed, f
         speed = np.hypot(sample[0], sample[1])
         on_the_spot = speed < 1e-6
         scale = 1.0
-        if speed > scaling_speed and max_vel_trans > scaling_speed:
-            scale += max_scaling_factor * min((speed - scaling_speed)
-                                              / (max_vel_trans - scaling_speed), 1.0)
+        if speed > scaling_speed and growth.max_vel_trans > scaling_speed:
+            scale += growth.max_scaling_factor * min(
+                (speed - scaling_speed) / (growth.max_vel_trans - scaling_speed), 1.0)
         grown[:] = footprint * scale
-        clear = circumscribed * scale / resolution + 1.5
-        steps = steps_of(sample, sim_time, sim_granularity, angular_sim_granularity)
+        clear = ground.circumscribed * scale / resolution + 1.5
+        steps = steps_of(sample, motion)
         dt = sim_time / steps
         last = steps
         if not on_the_spot:
-            last = min(steps, max(int(np.ceil(goal_range / (speed * dt))), 1))
+            last = min(steps, max(int(np.ceil(scoring.goal_range / (speed * dt))), 1))
         braked = sim_time
         if on_the_spot and acceleration[2] > 0.0:
-            braked = min(abs(sample[2]) / acceleration[2] + stop_time, sim_time)
-        now = sample.copy() if at_once else velocity.copy()
+            braked = min(abs(sample[2]) / acceleration[2] + motion.stop_time, sim_time)
+        now = sample.copy() if motion.at_once else velocity.copy()
         poses[0] = pose
         worst, best = 0, np.inf
         for n in range(1, steps + 1):
             before, after = (n - 1) & 1, n & 1
             advance(poses[before], now, sample, acceleration, dt, poses[after])
             x, y, yaw = poses[after]
-            free = _look_up(free_radii, resolution, origin_x, origin_y, x, y)
+            free = _look_up(ground.free_radii, resolution, origin_x, origin_y, x, y)
             stands = on_the_spot and n * dt * acceleration[2] >= 0.5 * abs(sample[2])
             cost = 0
             if not clear < free < np.inf or n == last or stands:
-                cost = cost_at(cells, resolution, origin_x, origin_y, grown, x, y, yaw)
+                cost = cost_at(ground.cells, resolution, origin_x, origin_y, grown, x, y, yaw)
                 if cost < 0:
                     if n * dt <= braked:
                         best = np.inf
                     break
                 worst = max(worst, cost)
             if stands or (n == last and not on_the_spot):
-                value = _look(grids, weights, resolution, origin_x, origin_y, poses[after],
-                              forward, here)
+                value = _look(scoring.grids, scoring.weights, resolution, origin_x, origin_y,
+                              poses[after], scoring.forward, here)
                 if value < best:
                     best = value
                     found[s] = here

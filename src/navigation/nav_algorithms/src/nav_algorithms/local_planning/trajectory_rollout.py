@@ -12,6 +12,7 @@ import numpy as np
 
 from nav_algorithms.costmap import footprint as footprints
 from nav_algorithms.costmap.costs import LETHAL, Costmap
+from nav_algorithms.costmap.footprint import Ground
 from nav_algorithms.local_planning import rollout
 from nav_algorithms.local_planning.goal import Arrival
 from nav_algorithms.local_planning.grids import distances_to
@@ -27,6 +28,7 @@ from nav_algorithms.local_planning.velocities import (
 from nav_algorithms.poses import wrap_angle
 
 HEADING_SCALE = 0.3  # upstream's, per radian off the heading
+NO_GROWTH = rollout.Growth(np.inf, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -167,21 +169,21 @@ class _Scorer:
             path = distances_to(costmap, near[:, :2], near[:, :2])
             goal = distances_to(costmap, near[-1:, :2], near[:, :2])
         self.grids = np.stack((path, goal, goal))
-        self.radii = footprints.free_radii(costmap)
+        self.ground = Ground.of(costmap, footprints.free_radii(costmap), footprint)
         unit = costmap.resolution if settings.meter_scoring else 1.0
         self.scales = np.array([settings.pdist_scale, settings.gdist_scale, 0.0, 0.0]) * unit
-        self.acceleration = np.array([settings.acc_lim_x, settings.acc_lim_y,
-                                      settings.acc_lim_theta])
+        self.motion = rollout.Motion(
+            np.array([settings.acc_lim_x, settings.acc_lim_y, settings.acc_lim_theta], float),
+            False, float(settings.sim_time), float(settings.sim_granularity),
+            float(settings.angular_sim_granularity), 0.0)
 
     def _rolled(self, candidates: np.ndarray, weights: np.ndarray) -> np.ndarray:
         s = self.settings
-        return rollout.rollouts(
-            self.costmap.cells, self.costmap.resolution, *map(float, self.costmap.origin),
-            self.radii, footprints.reach(self.footprint), self.footprint, self.grids, weights,
-            np.ascontiguousarray(candidates, float).reshape(-1, 3), self.pose, self.velocity,
-            self.acceleration, False, s.sim_time, s.sim_granularity, s.angular_sim_granularity,
-            s.heading_lookahead, float(np.hypot(*(self.near[-1, :2] - self.pose[:2]))), 0.0,
-            np.inf, 0.0, 0.0)
+        ahead = float(np.hypot(*(self.near[-1, :2] - self.pose[:2])))
+        scoring = rollout.Scoring(self.grids, weights, float(s.heading_lookahead), ahead)
+        return rollout.rollouts(self.ground, self.motion, scoring, NO_GROWTH,
+                                np.ascontiguousarray(candidates, float).reshape(-1, 3), self.pose,
+                                self.velocity)
 
     def costs(self, candidates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The candidates (S, 3) and their costs (S,), inf if they collide."""
@@ -226,10 +228,8 @@ class _Scorer:
         return np.abs(wrap_angle(self.pose[2] + after * candidates[:, 2] - bearing))
 
     def _driven(self, candidate: np.ndarray) -> np.ndarray:
-        s = self.settings
         return rollout.trajectory(self.pose, self.velocity, np.ascontiguousarray(candidate, float),
-                                  self.acceleration, False, s.sim_time, s.sim_granularity,
-                                  s.angular_sim_granularity)
+                                  self.motion)
 
     def command(self, candidate: np.ndarray) -> Command:
         """The candidate with its trajectory."""
