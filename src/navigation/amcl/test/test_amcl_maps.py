@@ -23,9 +23,9 @@ GOOD = grid_message(OccupancyGrid(np.zeros((2, 3), np.int8), 0.05, (0.0, 0.0)), 
 def source(monkeypatch):
     """`taken` has the maps that it gave on, `lines` what was said, last of all what is missing."""
     lines, taken = [], []
-    complaints = SimpleNamespace(missing=lambda *words: lines.append(words),
+    missing_data = SimpleNamespace(missing=lambda *words: lines.append(words),
                                  present=lambda what: lines.append(f"{what} is there"))
-    found = MapSource(lambda message: taken.append(grid_in(message, "map")), complaints)
+    found = MapSource(lambda message: taken.append(grid_in(message, "map")), missing_data)
     found.lines, found.taken = lines, taken
     monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: SimpleNamespace(resolved_name="/map"))
     monkeypatch.setattr(rospy, "logerr_throttle", lambda seconds, text, *values:

@@ -10,7 +10,7 @@ from sensor_msgs.msg import LaserScan
 
 from amcl.node import AmclNode
 from amcl.outputs import Outputs
-from nav_nodes.mount import Mount
+from nav_nodes.laser_mount import Mount
 
 
 @pytest.fixture
@@ -21,7 +21,7 @@ def node(monkeypatch):
     found._values = {"laser_min_range": -1.0, "laser_max_range": -1.0}
     found._lock, found._newest = threading.RLock(), rospy.Time(0)
     found._saved, found._has_jumped = None, False
-    found._complaints = SimpleNamespace(present=lambda _what: None)
+    found._missing_data = SimpleNamespace(present=lambda _what: None)
     found._scans = SimpleNamespace(resolved_name="/scan")
     found._frames = SimpleNamespace(
         mount=lambda _frame: Mount(np.zeros(3), False), clear=lambda: events.append("cleared"),

@@ -14,7 +14,7 @@ from sensor_msgs.msg import PointCloud
 
 from costmap_2d import CostmapROS
 from nav_algorithms.costmap.costs import LETHAL
-from nav_nodes.complaints import Complaints
+from nav_nodes.missing_data import MissingData
 from nav_nodes.transforms import Transforms
 
 PATIENCE = 60.0  # s
@@ -36,8 +36,8 @@ class CostmapApi(unittest.TestCase):
         self.frames = tf2_ros.TransformBroadcaster()
         self.located, self.seeing, self.obstacles = False, True, (0.55, 1.55)
         rospy.Timer(rospy.Duration(0.05), self.sense)
-        complaints = Complaints()
-        self.costmap = CostmapROS("local_costmap", Transforms(complaints), complaints)
+        missing_data = MissingData()
+        self.costmap = CostmapROS("local_costmap", Transforms(missing_data), missing_data)
 
     def sense(self, _event):
         stamp = rospy.Time.now()

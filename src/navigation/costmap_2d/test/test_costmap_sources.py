@@ -9,7 +9,7 @@ from geometry_msgs.msg import Point32, Transform
 from sensor_msgs.msg import LaserScan, PointCloud
 
 from costmap_2d import sources
-from costmap_2d.news import News
+from costmap_2d.message_age import MessageAge
 from costmap_2d.settings import table
 
 
@@ -31,7 +31,7 @@ class Frames:
 
 
 @pytest.fixture
-def complaints():
+def missing_data():
     """What is missing, with the advice."""
     return {}
 
@@ -46,7 +46,7 @@ def lines(monkeypatch):
 
 
 @pytest.fixture
-def make(monkeypatch, complaints):
+def make(monkeypatch, missing_data):
     """A source of these settings and the frames that it goes by, at time 10 s."""
     at = {"now": 10.0}
     monkeypatch.setattr(rospy.Time, "now", lambda: rospy.Time.from_sec(at["now"]))
@@ -56,8 +56,8 @@ def make(monkeypatch, complaints):
         frames = Frames()
         source = sources.Source({**values, "topic": "scan", **settings}, "map", frames,
                                 SimpleNamespace(
-                                    missing=lambda what, why, **_: complaints.update({what: why}),
-                                    present=lambda what: complaints.pop(what, None)))
+                                    missing=lambda what, why, **_: missing_data.update({what: why}),
+                                    present=lambda what: missing_data.pop(what, None)))
         return source, frames
 
     make_source.at = at
@@ -142,10 +142,10 @@ def test_a_sensor_is_current_within_its_rate(make):
 def test_how_long_a_sensor_is_silent(make):
     source, _ = make()
     make.at["now"] = 11.5
-    assert source.news() == News("PointCloud on /scan", "PointCloud on /scan that can be placed",
-                                 1.5, 1.5)
+    assert source.ages() == MessageAge("PointCloud on /scan",
+                                       "PointCloud on /scan that can be placed", 1.5, 1.5)
     source._take(cloud(11.0))
-    assert (source.news().heard, source.news().placed) == (0.0, 0.0)
+    assert (source.ages().heard, source.ages().placed) == (0.0, 0.0)
 
 
 def test_what_cannot_be_placed_is_no_news(make):
@@ -155,11 +155,11 @@ def test_what_cannot_be_placed_is_no_news(make):
     for now in (10.2, 10.4, 10.6, 10.8):
         make.at["now"] = now
         source._take(cloud(now))
-    assert source.news().heard == 0.0 and source.news().placed == pytest.approx(0.8)
+    assert source.ages().heard == 0.0 and source.ages().placed == pytest.approx(0.8)
     frames.until = 10.65
-    assert source.news().placed == pytest.approx(0.2)  # without an update of the costmap
+    assert source.ages().placed == pytest.approx(0.2)  # without an update of the costmap
     source.collect()
-    assert source.news().placed == pytest.approx(0.2)
+    assert source.ages().placed == pytest.approx(0.2)
 
 
 def test_a_transform_that_comes_after_its_scan_makes_nothing_old(make):
@@ -173,7 +173,7 @@ def test_a_transform_that_comes_after_its_scan_makes_nothing_old(make):
             source._take(cloud(now))
         if step % 100 == 99:
             source.collect()
-        oldest = max(oldest, source.news().placed)
+        oldest = max(oldest, source.ages().placed)
     assert oldest == pytest.approx(0.22, abs=0.011)
 
 
@@ -187,7 +187,7 @@ def test_a_quick_sensor_waits_for_slow_transforms(make):
         if step % 8 == 0:
             source.collect()
         if now > 10.6:
-            assert source.news().placed < 0.45
+            assert source.ages().placed < 0.45
 
 
 def test_a_scan_after_a_damaged_one_is_news_at_once(make, lines):
@@ -198,8 +198,8 @@ def test_a_scan_after_a_damaged_one_is_news_at_once(make, lines):
         message.header.stamp, message.header.frame_id = rospy.Time.from_sec(now), "laser"
         source._take(message)
         if now == 11.0:
-            assert source.collect() == [] and source.news().placed == 1.0
-    assert source.news().placed == 0.0
+            assert source.collect() == [] and source.ages().placed == 1.0
+    assert source.ages().placed == 0.0
 
 
 def test_who_sees_nothing_sees(make):
@@ -210,24 +210,24 @@ def test_who_sees_nothing_sees(make):
         message = LaserScan(ranges=ranges, range_max=5.0, time_increment=5.0)
         message.header.stamp, message.header.frame_id = rospy.Time(11), "laser"
         source._take(message)
-        assert source.news().placed == 0.0
+        assert source.ages().placed == 0.0
         (seen,) = source.collect()
         assert not len(seen.points)
         make.at["now"] = 10.0
 
 
-def test_a_sweep_that_ends_in_the_future_is_said(make, complaints):
+def test_a_sweep_that_ends_in_the_future_is_said(make, missing_data):
     """Its beginning is known, so tf has nothing to complain about for long."""
     source, frames = make(data_type="LaserScan")
     message = LaserScan(ranges=[1.0] * 360, range_max=5.0, time_increment=0.05)
     message.header.stamp, message.header.frame_id = rospy.Time(11), "laser"
     make.at["now"] = frames.until = 11.0
     source._take(message)
-    assert source.collect() == [] and source.news().placed == 1.0
-    assert "17.9 s (time_increment)" in source.news().why
-    assert "17.9 s (time_increment)" in complaints[source.news().usable]
+    assert source.collect() == [] and source.ages().placed == 1.0
+    assert "17.9 s (time_increment)" in source.ages().why
+    assert "17.9 s (time_increment)" in missing_data[source.ages().usable]
     frames.until = 40.0
-    assert source.collect() and source.news().why == "" and not complaints
+    assert source.collect() and source.ages().why == "" and not missing_data
 
 
 def test_a_pause_makes_nothing_old(make, monkeypatch):
@@ -240,7 +240,7 @@ def test_a_pause_makes_nothing_old(make, monkeypatch):
     source.stop()
     make.at["now"] = 20.0
     source.start()
-    assert source.news().placed == 0.0 and source.collect() == []
+    assert source.ages().placed == 0.0 and source.collect() == []
 
 
 @pytest.mark.parametrize("stamp", [2.0e9 + 20, 4294967295.0])
@@ -250,8 +250,8 @@ def test_a_message_of_another_age_never_gets_to_tf(make, lines, stamp):
     frames.find = lambda *_: pytest.fail("asked")
     source._take(cloud(stamp))
     make.at["now"] = 11.0
-    assert source.collect() == [] and source.news().placed == 1.0
-    assert f"dated {stamp:.0f} s has come at 10 s" in source.news().why and len(lines) == 1
+    assert source.collect() == [] and source.ages().placed == 1.0
+    assert f"dated {stamp:.0f} s has come at 10 s" in source.ages().why and len(lines) == 1
 
 
 def test_a_damaged_cloud_is_one_line_and_no_news(make, lines):
@@ -262,7 +262,7 @@ def test_a_damaged_cloud_is_one_line_and_no_news(make, lines):
         message.header.stamp, message.header.frame_id = rospy.Time(10), "laser"
         source._take(message)
         assert source.collect() == []
-    assert source.news().placed == 2.0 and "needs x, y and z" in source.news().why
+    assert source.ages().placed == 2.0 and "needs x, y and z" in source.ages().why
     assert "needs x, y and z" in lines[0] and "/scan" in lines[0] and len(lines) == 1
 
 
@@ -275,9 +275,9 @@ def test_a_scan_whose_times_make_no_sense_is_one_line(make, lines, increment):
         message.header.stamp, message.header.frame_id = rospy.Time.from_sec(stamp), "laser"
         source._take(message)
         make.at["now"] += 1.0
-        assert "time_increment" in source.news().why
+        assert "time_increment" in source.ages().why
         assert source.collect() == []
-    assert source.news().placed == 2.0 and "time_increment" in lines[0] and len(lines) == 1
+    assert source.ages().placed == 2.0 and "time_increment" in lines[0] and len(lines) == 1
     message.time_increment = 0.0
     source._take(message)
-    assert len(source.collect()) == 1 and source.news().why == ""
+    assert len(source.collect()) == 1 and source.ages().why == ""

@@ -9,7 +9,7 @@ from sensor_msgs.msg import LaserScan
 
 from gmapping.mapper import TABLE, Mapper, ScanError, ranges_of, settings_from
 from nav_algorithms.grid import OCCUPIED
-from nav_nodes.mount import Mount
+from nav_nodes.laser_mount import Mount
 from nav_nodes.parameters import ParameterError, load_table
 
 PACKAGE = Path(__file__).parent.parent

@@ -22,7 +22,7 @@ def node(monkeypatch):
     found._frames = {"odom_frame": "odom", "base_frame": "base_link"}
     found._newest, found._map = rospy.Time(0), None
     found._lock, found._scans = threading.Lock(), SimpleNamespace(resolved_name="/scan")
-    found._silence = SimpleNamespace(heard=nullcontext)
+    found._watchdog = SimpleNamespace(heard=nullcontext)
     found._mounts = SimpleNamespace(of=lambda _frame: True)
     found._mapper = SimpleNamespace(take=lambda *_: True, is_wanted=lambda: True,
                                     slam=SimpleNamespace(map_to_odom=None))

@@ -12,7 +12,7 @@ from geometry_msgs.msg import PoseStamped, Quaternion
 from move_base_msgs.msg import MoveBaseGoal
 from nav_msgs.msg import Odometry
 
-from costmap_2d.news import News
+from costmap_2d.message_age import MessageAge
 from move_base import goals, services
 from move_base.base import Base
 from move_base.node import MoveBase
@@ -141,20 +141,20 @@ def test_odometry_may_end_a_limit_while_it_is_applied():
 
 @pytest.fixture
 def watched():
-    """Whether the robot may drive at 1 s, by odometry of that time and by a laser's news."""
+    """Whether the robot may drive at 1 s, by odometry of that time and by a laser's ages."""
     return _watched
 
 
-def _watched(odometry, news, said=None, fault="", timeout=0.6):
+def _watched(odometry, ages, said=None, fault="", timeout=0.6):
     costmap = SimpleNamespace(global_frame="map", robot_pose=lambda: np.zeros(3),
                               is_ready=lambda: True, is_current=lambda: True,
-                              news=lambda: [News("laser", "placed laser", *news)])
+                              ages=lambda: [MessageAge("laser", "placed laser", *ages)])
     base = SimpleNamespace(odom_topic="/odom", heard=rospy.Time.from_sec(odometry),
                            odometry_fault=fault)
     said = {} if said is None else said
-    complaints = SimpleNamespace(missing=lambda what, why, **_: said.update({what: why}),
+    missing_data = SimpleNamespace(missing=lambda what, why, **_: said.update({what: why}),
                                  present=lambda what: said.pop(what, None))
-    return Watch((costmap, costmap), base, None, complaints).can_drive(1.0, timeout, False)
+    return Watch((costmap, costmap), base, None, missing_data).can_drive(1.0, timeout, False)
 
 
 @pytest.mark.parametrize(("odometry", "scan", "drives"), [

@@ -13,7 +13,7 @@ LATE = 2.0  # s by which the odometry's transforms come after their stamps
 
 
 class Told:
-    """Complaints that are only counted."""
+    """MissingData that are only counted."""
 
     def __init__(self):
         self.missed, self.back = [], []
@@ -31,7 +31,7 @@ def late(monkeypatch):
     monkeypatch.setattr(rospy.Time, "now", lambda: rospy.Time(10))
     found = Transforms.__new__(Transforms)
     found.chain, found.buffer = ("odom", "base"), tf2_ros.Buffer(rospy.Duration(30), debug=False)
-    found._complaints, found._lock, found._blamed = Told(), threading.Lock(), {}
+    found._missing_data, found._lock, found._blamed = Told(), threading.Lock(), {}
     for child, stamp in (("base", 7.0), ("base", 10.0 - LATE), ("laser", 0.0)):
         message = TransformStamped(child_frame_id=child)
         message.header.frame_id = "odom" if child == "base" else "base"
@@ -47,8 +47,8 @@ def test_a_lookup_that_succeeds_in_the_past_does_not_say_that_all_is_well(late):
     for stamp in (9, 7, 9, 7):  # s: too new, then old enough
         assert late.newest_pose("odom", "base", 0.5) is None
         assert (late.find("odom", "laser", rospy.Time(stamp)) is None) == (stamp == 9)
-    assert set(late._complaints.missed) == {"new transform from odom to base"}
-    assert late._complaints.back == []
+    assert set(late._missing_data.missed) == {"new transform from odom to base"}
+    assert late._missing_data.back == []
 
 
 @pytest.mark.parametrize(("child", "second"), [("la\0ser", 9), ("laser", 2**32 - 1)])
@@ -56,7 +56,7 @@ def test_what_tf2_does_not_take_is_missed_like_any_other(late, child, second):
     """Asked for the first it raises ValueError, for the second it ends the process."""
     assert late.find("odom", child, rospy.Time(second)) is None
     assert late.pose("odom", child, rospy.Time(second), wait_s=0.1) is None
-    assert late._complaints.missed
+    assert late._missing_data.missed
 
 
 def test_when_nobody_misses_it_any_more_it_is_back(late):
@@ -64,10 +64,10 @@ def test_when_nobody_misses_it_any_more_it_is_back(late):
     late.find("odom", "laser", rospy.Time(9))
     late.find("odom", "laser", rospy.Time(7))
     assert late.newest_pose("odom", "base", 3.0) is not None
-    assert set(late._complaints.back) == {"new transform from odom to base"}
+    assert set(late._missing_data.back) == {"new transform from odom to base"}
 
 
 def test_a_stamp_of_another_age_is_not_asked_of_tf_which_would_abort(late):
     assert late.pose("odom", "base", rospy.Time(2**32 - 1)) is None
     assert late.find("odom", "laser", rospy.Time(2**32 - 1)) is None
-    assert late._complaints.missed
+    assert late._missing_data.missed

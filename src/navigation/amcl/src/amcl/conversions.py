@@ -11,8 +11,8 @@ from sensor_msgs.msg import LaserScan
 
 from nav_algorithms.estimates import Estimate
 from nav_algorithms.sensor_models import Scan
+from nav_nodes.laser_mount import Mount
 from nav_nodes.messages import is_valid, pose_message, pose_of
-from nav_nodes.mount import Mount
 
 X, Y, YAW = 0, 1, 5  # of the six coordinates of a pose's covariance
 

@@ -11,8 +11,8 @@ from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.srv import GetMap
 
 from nav_algorithms.grid import OccupancyGrid
-from nav_nodes.complaints import Complaints
 from nav_nodes.messages import grid_of
+from nav_nodes.missing_data import MissingData
 
 RETRY = 0.5  # s of wall time between two calls of static_map, as upstream
 ADVICE = "start map_server with the map's YAML file"
@@ -35,9 +35,9 @@ class MapSource:
     """
 
     def __init__(self, take: Callable[[OccupancyGridMessage], None],
-                 complaints: Complaints) -> None:
+                 missing_data: MissingData) -> None:
         self._take = take
-        self._complaints = complaints
+        self._missing_data = missing_data
         self._topic: rospy.Subscriber | None = None
         self._first_only = False
         self._lock = threading.Lock()  # of two simultaneous maps the second must see the first
@@ -84,9 +84,9 @@ class MapSource:
     def complain(self) -> None:
         """Call periodically: logs how long there has been no map."""
         if not self._came:
-            self._complaints.missing(self.missing, self._advice)
+            self._missing_data.missing(self.missing, self._advice)
         else:
-            self._complaints.present(self.missing)
+            self._missing_data.present(self.missing)
 
     def _from_topic(self, message: OccupancyGridMessage) -> None:
         self.set(message, self._first_only)

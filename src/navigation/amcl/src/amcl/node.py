@@ -26,11 +26,11 @@ from nav_algorithms import poses
 from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.monte_carlo import Localisation, Step
 from nav_nodes import clock
-from nav_nodes.complaints import Complaints
 from nav_nodes.ignored import warn_of_ignored
+from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, load_table, read_parameters, serve_changes
 from nav_nodes.program import init_node, spin
-from nav_nodes.silence import Silence
+from nav_nodes.topic_watchdog import TopicWatchdog
 
 TABLE = Path("params/amcl.yaml")  # below the package's folder
 SCAN_PATIENCE = 0.5               # s of wall time to wait for a scan's odometry
@@ -49,20 +49,20 @@ class AmclNode:
         self._values = with_order(values)
         self._lock = threading.RLock()
         self._random = np.random.default_rng(values["seed"])
-        self._complaints = Complaints()
-        clock.watch(self._complaints)
-        self._frames = RobotFrames(self._values, self._complaints)
+        self._missing_data = MissingData()
+        clock.watch(self._missing_data)
+        self._frames = RobotFrames(self._values, self._missing_data)
         self._grid: OccupancyGrid | None = None
         self._localisation: Localisation | None = None
         self._told: tuple[np.ndarray, np.ndarray] | None = None  # by initialpose, before a map
         self._saved: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None  # with its odometry
         self._odometry: np.ndarray | None = None
         self._newest = rospy.Time(0)
-        self._silence = Silence(self._complaints, "laser scans", "scan")
+        self._watchdog = TopicWatchdog(self._missing_data, "laser scans", "scan")
         self._is_tracking = False  # the transform map to odom is known
         self._has_jumped = False   # the clock went back: follow the next scan's odometry
         self._outputs = Outputs()
-        self._maps = MapSource(self._take_map, self._complaints)
+        self._maps = MapSource(self._take_map, self._missing_data)
         rospy.Service("global_localization", Empty, self._start_anywhere)
         rospy.Service("request_nomotion_update", Empty, self._weigh_next)
         rospy.Service("set_map", SetMap, self._set_map)
@@ -156,7 +156,7 @@ class AmclNode:
     # Scans
 
     def _take_scan(self, message: LaserScan) -> None:
-        with self._silence.heard():
+        with self._watchdog.heard():
             if self._localisation is not None:
                 self._use_scan(message)
 
@@ -173,9 +173,9 @@ class AmclNode:
             scan = scan_of(message, mount, self._values["laser_min_range"],
                            self._values["laser_max_range"])
         except ValueError as error:
-            self._complaints.missing(what, str(error))
+            self._missing_data.missing(what, str(error))
             return
-        self._complaints.present(what)
+        self._missing_data.present(what)
         with self._lock:
             if stamp > self._newest:  # the clock went back while this one waited for its odometry
                 return
@@ -218,7 +218,7 @@ class AmclNode:
             time.sleep(WATCH)
             now, rate = time.monotonic(), self._values["save_pose_rate"]
             self._maps.complain()
-            self._silence.look(self._scans)
+            self._watchdog.look(self._scans)
             with self._lock:
                 if not self._is_tracking or self._odometry is None:
                     continue

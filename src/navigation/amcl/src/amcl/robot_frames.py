@@ -8,8 +8,8 @@ import numpy as np
 import rospy
 
 from nav_algorithms import poses
-from nav_nodes.complaints import Complaints
-from nav_nodes.mount import Mount, Mounts
+from nav_nodes.laser_mount import Mount, Mounts
+from nav_nodes.missing_data import MissingData
 from nav_nodes.transforms import NEWEST, Transforms
 
 PATIENCE = 0.5   # s of wall time to wait for the odometry at the time of a manually set pose
@@ -18,10 +18,10 @@ PATIENCE = 0.5   # s of wall time to wait for the odometry at the time of a manu
 class RobotFrames:
     """The frames of one robot."""
 
-    def __init__(self, values: dict[str, Any], complaints: Complaints) -> None:
+    def __init__(self, values: dict[str, Any], missing_data: MissingData) -> None:
         """`values` by the names of the parameter table; rospy is initialised."""
-        self._complaints = complaints
-        self._transforms = Transforms(complaints)
+        self._missing_data = missing_data
+        self._transforms = Transforms(missing_data)
         self.rename(values)
 
     def rename(self, values: dict[str, Any]) -> None:
@@ -29,7 +29,7 @@ class RobotFrames:
         self._odom, self._base = (values[name].lstrip("/")
                                   for name in ("odom_frame_id", "base_frame_id"))
         self._transforms.chain = self._odom, self._base
-        self._mounts = Mounts(self._base, self._transforms, self._complaints)
+        self._mounts = Mounts(self._base, self._transforms, self._missing_data)
 
     def clear(self) -> None:
         """Forgets all transforms, after the clock was set back."""

@@ -13,7 +13,7 @@ import rospy
 
 from costmap_2d.building import build_layer, change_layer
 from costmap_2d.map_input import MapInput
-from costmap_2d.news import News
+from costmap_2d.message_age import MessageAge
 from costmap_2d.publishing import CostmapPublisher
 from costmap_2d.sensors import Sensors
 from costmap_2d.settings import TABLES, footprint_of, geometry_of, read_settings, table
@@ -22,7 +22,7 @@ from nav_algorithms.costmap.footprint import circle, padded
 from nav_algorithms.costmap.layered import LayeredCostmap
 from nav_algorithms.costmap.static import StaticLayer
 from nav_algorithms.poses import transform_points
-from nav_nodes.complaints import Complaints
+from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import serve_changes
 from nav_nodes.transforms import Transforms
 
@@ -39,14 +39,14 @@ class CostmapROS:
     tells whether the first complete update was made. All methods may be called on any thread.
     """
 
-    def __init__(self, name: str, transforms: Transforms, complaints: Complaints) -> None:
+    def __init__(self, name: str, transforms: Transforms, missing_data: MissingData) -> None:
         """Reads `~NAME/...` (all that is in `tables`), subscribes, and starts updating.
 
         Raises nav_nodes.parameters.ParameterError for an invalid parameter.
         """
         self.name = name
         self._where = rospy.resolve_name(f"~{name}")
-        self.transforms, self._complaints = transforms, complaints
+        self.transforms, self._missing_data = transforms, missing_data
         self._lock = threading.RLock()
         self._ready = threading.Event()
         self._paused = self._stopped = False
@@ -69,7 +69,7 @@ class CostmapROS:
         pairs = list(zip(settings.layers, layers, strict=True))
         self._maps = [MapInput(each.values, layer, self._layered, self._lock)
                       for each, layer in pairs if isinstance(layer, StaticLayer)]
-        self._sensors = Sensors(settings.layers, self.global_frame, transforms, complaints)
+        self._sensors = Sensors(settings.layers, self.global_frame, transforms, missing_data)
         self._servers = [serve_changes(table("costmap"), self._values, self._change, f"~{name}")]
         for each, layer in pairs:
             self._servers.append(serve_changes(table(*TABLES[each.kind]), each.values, partial(
@@ -115,9 +115,9 @@ class CostmapROS:
             return False
         return self._sensors.are_current()
 
-    def news(self) -> list[News]:
+    def ages(self) -> list[MessageAge]:
         """When each sensor last sent a message, and when a usable one."""
-        return self._sensors.news()
+        return self._sensors.ages()
 
     def orphaned_maps(self) -> list[str]:
         """Topics of maps that have lost their publisher; the last map is still used."""
@@ -144,7 +144,7 @@ class CostmapROS:
 
     def update(self) -> bool:
         """Updates now, on the caller's thread; False if the map or the pose is missing."""
-        missing = [each for each in self._maps if not each.has_map(self._complaints)]
+        missing = [each for each in self._maps if not each.has_map(self._missing_data)]
         pose = None if missing else self.robot_pose()
         if pose is None:
             return False

@@ -13,9 +13,9 @@ from rospy.numpy_msg import numpy_msg
 
 from nav_algorithms.costmap.layered import LayeredCostmap
 from nav_algorithms.costmap.static import StaticLayer, costs_of
-from nav_nodes.complaints import Complaints
 from nav_nodes.messages import grid_of
-from nav_nodes.silence import is_published
+from nav_nodes.missing_data import MissingData
+from nav_nodes.topic_watchdog import is_published
 from nav_nodes.transforms import Transforms
 
 
@@ -37,13 +37,13 @@ class MapInput:
             rospy.Subscriber(f"{self._topic}_updates", numpy_msg(OccupancyGridUpdate),
                              self._take_update, queue_size=10)
 
-    def has_map(self, complaints: Complaints) -> bool:
+    def has_map(self, missing_data: MissingData) -> bool:
         """Whether a map has come; logs a line if not."""
         what = f"map on {self._topic}"
         if not self._layer.has_map:
-            complaints.missing(what, "start map_server or slam_gmapping, or set map_topic")
+            missing_data.missing(what, "start map_server or slam_gmapping, or set map_topic")
             return False
-        complaints.present(what)
+        missing_data.present(what)
         return True
 
     @property

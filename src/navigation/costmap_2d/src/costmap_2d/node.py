@@ -7,8 +7,8 @@ import rospy
 from costmap_2d.costmap_ros import CostmapROS
 from costmap_2d.settings import SEARCHED_UPWARDS
 from nav_nodes import clock
-from nav_nodes.complaints import Complaints
 from nav_nodes.ignored import below, warn_of_ignored
+from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError
 from nav_nodes.program import init_node, spin
 from nav_nodes.transforms import Transforms
@@ -17,10 +17,10 @@ from nav_nodes.transforms import Transforms
 def main() -> int:
     """Runs `~costmap` until shutdown; returns the exit status."""
     init_node("costmap_node")
-    complaints = Complaints()
-    clock.watch(complaints)
+    missing_data = MissingData()
+    clock.watch(missing_data)
     try:
-        costmap = CostmapROS("costmap", Transforms(complaints), complaints)
+        costmap = CostmapROS("costmap", Transforms(missing_data), missing_data)
     except ParameterError as error:
         rospy.logfatal("%s", error)
         return 1

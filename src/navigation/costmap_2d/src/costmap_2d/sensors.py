@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from costmap_2d.news import News
+from costmap_2d.message_age import MessageAge
 from costmap_2d.settings import LayerSettings
 from costmap_2d.sources import Source
 from nav_algorithms.costmap.layer import Layer
 from nav_algorithms.costmap.obstacles import ObstacleLayer
-from nav_nodes.complaints import Complaints
+from nav_nodes.missing_data import MissingData
 from nav_nodes.transforms import Transforms
 
 
@@ -17,9 +17,9 @@ class Sensors:
     """The sources of every layer; as for a Source, only the costmap's thread observes."""
 
     def __init__(self, layers: Sequence[LayerSettings], frame: str, transforms: Transforms,
-                 complaints: Complaints) -> None:
+                 missing_data: MissingData) -> None:
         """`frame` is the costmap's."""
-        self._of_layers = {each.name: [Source(values, frame, transforms, complaints)
+        self._of_layers = {each.name: [Source(values, frame, transforms, missing_data)
                                        for values in each.sources.values()] for each in layers}
         self._all = [source for sources in self._of_layers.values() for source in sources]
 
@@ -42,13 +42,13 @@ class Sensors:
         """Whether each had an observation within its `expected_update_rate`."""
         return all(source.is_current() for source in self._all)
 
-    def news(self) -> list[News]:
+    def ages(self) -> list[MessageAge]:
         """Of each; of those that share a topic, of the one longest without usable data."""
-        found: dict[str, News] = {}
-        for news in (source.news() for source in self._all):
-            known = found.get(news.what)
-            if known is None or abs(news.placed) > abs(known.placed):
-                found[news.what] = news
+        found: dict[str, MessageAge] = {}
+        for ages in (source.ages() for source in self._all):
+            known = found.get(ages.what)
+            if known is None or abs(ages.placed) > abs(known.placed):
+                found[ages.what] = ages
         return list(found.values())
 
     def observe(self, layers: Sequence[Layer]) -> None:

@@ -12,10 +12,10 @@ from rospy.numpy_msg import numpy_msg
 from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2
 
 from costmap_2d.clouds import placed, rotation_and_translation, timed_points
-from costmap_2d.news import News
+from costmap_2d.message_age import MessageAge
 from nav_algorithms.costmap.obstacles import Observation
-from nav_nodes.complaints import Complaints
-from nav_nodes.silence import why_silent
+from nav_nodes.missing_data import MissingData
+from nav_nodes.topic_watchdog import why_silent
 from nav_nodes.transforms import Transforms, is_far
 
 TYPES = {"LaserScan": numpy_msg(LaserScan), "PointCloud": PointCloud, "PointCloud2": PointCloud2}
@@ -36,10 +36,10 @@ class Source:
     """
 
     def __init__(self, settings: dict[str, Any], frame: str, transforms: Transforms,
-                 complaints: Complaints) -> None:
+                 missing_data: MissingData) -> None:
         """`settings`: parameters of params/source.yaml; `frame` is the costmap's."""
         self.settings = settings
-        self._frame, self._transforms, self._complaints = frame, transforms, complaints
+        self._frame, self._transforms, self._missing_data = frame, transforms, missing_data
         self._sensor_frame = settings["sensor_frame"].lstrip("/")
         self._what = f"{settings['data_type']} on {rospy.resolve_name(settings['topic'])}"
         self._lock = threading.Lock()
@@ -84,7 +84,7 @@ class Source:
         rate = self.settings["expected_update_rate"]
         return not rate or (rospy.Time.now() - self._updated).to_sec() <= rate
 
-    def news(self) -> News:
+    def ages(self) -> MessageAge:
         """Ages, since `start` if nothing came. On any thread, also between two updates."""
         with self._lock:
             waiting = list(self._waiting)
@@ -94,7 +94,7 @@ class Source:
                 break
         all_is_well = waiting and waiting[-1] is self._newest and not self._fault
         now = rospy.Time.now()
-        return News(self._what, self._usable, (now - self._heard_at).to_sec(),
+        return MessageAge(self._what, self._usable, (now - self._heard_at).to_sec(),
                     (now - self._placed_at).to_sec(),
                     "" if all_is_well else self._why_useless(waiting))
 
@@ -110,7 +110,7 @@ class Source:
         if newest is not None:
             self._note(newest)
         elif not silent and (why := self._why_useless(waiting)):
-            self._complaints.missing(self._usable, why, patience=SILENCE)
+            self._missing_data.missing(self._usable, why, patience=SILENCE)
             self._complained = True
         return [observation for _, observation in self._seen]
 
@@ -124,7 +124,7 @@ class Source:
         if not near:
             self._pass_over(f"a message dated {stamp.secs} s has come at {now.to_sec():.0f} s")
         self._heard_at = now
-        self._complaints.present(self._what)
+        self._missing_data.present(self._what)
 
     def _pass_over(self, fault: str) -> None:
         if not self._fault:
@@ -135,7 +135,7 @@ class Source:
         """Take note of the newest message that was transformed."""
         self._newest, self._placed_at, self._fault = arrival, arrival.at, ""
         if self._complained:
-            self._complaints.present(self._usable)
+            self._missing_data.present(self._usable)
             self._complained = False
 
     def _why_useless(self, waiting: list[_Arrival]) -> str:
@@ -156,7 +156,7 @@ class Source:
     def _complain(self, subscriber: rospy.Subscriber) -> None:
         rate = self.settings["expected_update_rate"]
         why = why_silent(subscriber, self.settings["topic"])
-        self._complaints.missing(self._what, f"expected every {rate:g} s; {why}" if rate else why,
+        self._missing_data.missing(self._what, f"expected every {rate:g} s; {why}" if rate else why,
                                  patience=rate or SILENCE)
 
     def _place_newest(self, waiting: list[_Arrival]) -> _Arrival | None:

@@ -23,11 +23,11 @@ from fake_localization.poses import (
     transform_of,
 )
 from nav_nodes import clock
-from nav_nodes.complaints import Complaints
 from nav_nodes.ignored import warn_of_ignored
+from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node
-from nav_nodes.silence import is_published, why_silent
+from nav_nodes.topic_watchdog import is_published, why_silent
 from nav_nodes.transforms import NEWEST, Transforms
 
 WAITING = 100  # poses that wait for the odometry of their moment, at most; upstream's number
@@ -49,9 +49,9 @@ class FakeLocalization:
             for name in ("global_frame_id", "odom_frame_id", "base_frame_id"))
         self._ahead = rospy.Duration.from_sec(values["transform_tolerance"])
         self._offset = offset(values["delta_x"], values["delta_y"], values["delta_yaw"])
-        self._complaints = Complaints()
-        clock.watch(self._complaints)
-        self._transforms = Transforms(self._complaints, (self._odom, self._base))
+        self._missing_data = MissingData()
+        clock.watch(self._missing_data)
+        self._transforms = Transforms(self._missing_data, (self._odom, self._base))
         self._waiting: deque[Odometry] = deque(maxlen=WAITING)
         self._came = threading.Condition()
         self._newest, self._sent = rospy.Time(0), None
@@ -72,10 +72,10 @@ class FakeLocalization:
                 came = self._waiting or self._came.wait(QUIET / 4)
             if came:
                 last = time.monotonic()
-                self._complaints.present(missing)
+                self._missing_data.present(missing)
                 self._publish_what_is_ready()
             elif time.monotonic() - last > QUIET:
-                self._complaints.missing(missing, self._why_no_truth(), since=last)
+                self._missing_data.missing(missing, self._why_no_truth(), since=last)
 
     def _take_truth(self, truth: Odometry) -> None:
         with self._came:
@@ -110,9 +110,9 @@ class FakeLocalization:
         try:
             base = self._offset @ matrix_of(truth.pose.pose)
         except ValueError as error:
-            self._complaints.missing("true pose that is one", str(error))
+            self._missing_data.missing("true pose that is one", str(error))
             return
-        self._complaints.present("true pose that is one")
+        self._missing_data.present("true pose that is one")
         odometry = self._transforms.find(self._odom, self._base, truth.header.stamp)
         if odometry is None:  # older than all odometry
             return

@@ -11,7 +11,7 @@ from sensor_msgs.msg import LaserScan
 
 from nav_algorithms import poses
 from nav_algorithms.particle_slam import ParticleSlam, SlamSettings
-from nav_nodes.mount import Mount
+from nav_nodes.laser_mount import Mount
 from nav_nodes.parameters import ParameterError
 
 TABLE = Path("params/slam_gmapping.yaml")  # below the package's folder

@@ -17,13 +17,13 @@ from std_msgs.msg import Float64
 
 from gmapping.mapper import TABLE, Mapper, ScanError
 from nav_nodes import clock
-from nav_nodes.complaints import Complaints
 from nav_nodes.ignored import warn_of_ignored
+from nav_nodes.laser_mount import Mount, Mounts
 from nav_nodes.messages import MapAnswer, grid_message, transform_message
-from nav_nodes.mount import Mount, Mounts
+from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
-from nav_nodes.silence import Silence
+from nav_nodes.topic_watchdog import TopicWatchdog
 from nav_nodes.transforms import Transforms
 
 PATIENCE = 0.5  # s of wall time to wait for a scan's odometry
@@ -44,15 +44,15 @@ class SlamNode:
                         for name in ("map_frame", "odom_frame", "base_frame")}
         self._lock = threading.Lock()
         self._mapper = Mapper(values)
-        self._complaints = Complaints()
-        clock.watch(self._complaints)
-        self._transforms = Transforms(self._complaints, (self._frames["odom_frame"],
+        self._missing_data = MissingData()
+        clock.watch(self._missing_data)
+        self._transforms = Transforms(self._missing_data, (self._frames["odom_frame"],
                                                          self._frames["base_frame"]))
-        self._mounts = Mounts(self._frames["base_frame"], self._transforms, self._complaints)
+        self._mounts = Mounts(self._frames["base_frame"], self._transforms, self._missing_data)
         self._map: OccupancyGrid | None = None
         self._map_to_odom = np.zeros(3)
         self._newest = rospy.Time(0)
-        self._silence = Silence(self._complaints, "laser scans", "scan")
+        self._watchdog = TopicWatchdog(self._missing_data, "laser scans", "scan")
         self._map_topic = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
         self._metadata_topic = rospy.Publisher("map_metadata", MapMetaData, queue_size=1,
                                                latch=True)
@@ -62,7 +62,7 @@ class SlamNode:
         threading.Thread(target=self._broadcast, daemon=True).start()
 
     def _take_scan(self, scan: LaserScan) -> None:
-        with self._silence.heard():
+        with self._watchdog.heard():
             with self._lock:
                 is_wanted = self._mapper.is_wanted()
             if is_wanted:
@@ -124,7 +124,7 @@ class SlamNode:
                     self._map_to_odom, self._frames["map_frame"], self._frames["odom_frame"],
                     now + rospy.Duration.from_sec(delay)))
                 last = now
-            self._silence.look(self._scans)
+            self._watchdog.look(self._scans)
             time.sleep(min(period, 0.5) or 0.5)
 
 

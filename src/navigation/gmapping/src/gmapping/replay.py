@@ -27,8 +27,8 @@ from gmapping.mapper import TABLE, Mapper, ScanError
 from map_server.errors import MapFileError
 from map_server.map_files import write_map
 from nav_nodes.ignored import ignored
+from nav_nodes.laser_mount import Mount
 from nav_nodes.messages import yaw_of
-from nav_nodes.mount import Mount
 from nav_nodes.parameters import ParameterError, load_table
 
 SCANS = ("sensor_msgs/LaserScan",)

@@ -21,13 +21,13 @@ from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 from nav_algorithms import poses
 from nav_algorithms.scan_slam import ScanSlam, ScanSlamSettings
 from nav_nodes import clock
-from nav_nodes.complaints import Complaints
 from nav_nodes.ignored import warn_of_ignored
+from nav_nodes.laser_mount import Mount, Mounts
 from nav_nodes.messages import MapAnswer, grid_message, pose_of, stamped_pose, transform_message
-from nav_nodes.mount import Mount, Mounts
+from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
-from nav_nodes.silence import Silence
+from nav_nodes.topic_watchdog import TopicWatchdog
 from nav_nodes.transforms import Transforms
 
 PATIENCE = 0.5  # s of wall time to wait for a scan's transforms
@@ -57,11 +57,11 @@ class HectorMapping:
         self._map_frame, self._odom_frame, self._base_frame = (
             values[name].lstrip("/") for name in ("map_frame", "odom_frame", "base_frame"))
         self._lock = threading.Lock()
-        self._complaints = Complaints()
-        clock.watch(self._complaints)
-        self._transforms = Transforms(self._complaints, (self._odom_frame, self._base_frame))
-        self._mounts = Mounts(self._base_frame, self._transforms, self._complaints)
-        self._silence = Silence(self._complaints, "laser scans", values["scan_topic"])
+        self._missing_data = MissingData()
+        clock.watch(self._missing_data)
+        self._transforms = Transforms(self._missing_data, (self._odom_frame, self._base_frame))
+        self._mounts = Mounts(self._base_frame, self._transforms, self._missing_data)
+        self._watchdog = TopicWatchdog(self._missing_data, "laser scans", values["scan_topic"])
         self._broadcaster = tf2_ros.TransformBroadcaster()
         self._sent = rospy.Time(0)
         self._reset()
@@ -106,7 +106,7 @@ class HectorMapping:
 
     def _take_scan(self, scan: LaserScan) -> None:
         begun = time.monotonic()
-        with self._silence.heard():
+        with self._watchdog.heard():
             if scan.header.stamp < self._sent:
                 rospy.logwarn("the clock went back by %.1f s: mapping goes on from there",
                               (self._sent - scan.header.stamp).to_sec())
@@ -139,9 +139,9 @@ class HectorMapping:
                               mount.pose[:2], guess)
         what = "scan that fits the map"
         if fits:
-            self._complaints.present(what)
+            self._missing_data.present(what)
         else:
-            self._complaints.missing(what, f"the pose stays where it was; {len(ends)} beams hit "
+            self._missing_data.missing(what, f"the pose stays where it was; {len(ends)} beams hit "
                                            "something, and too few of those a wall of the map")
         return self._slam.pose, self._slam.covariance
 
@@ -191,7 +191,7 @@ class HectorMapping:
                 newest = self._newest_map()
                 self._map_topic.publish(newest)
                 self._metadata_topic.publish(newest.info)
-            self._silence.look(self._scans)
+            self._watchdog.look(self._scans)
             time.sleep(min(self._values["map_pub_period"], 0.5))
 
 

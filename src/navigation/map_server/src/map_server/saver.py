@@ -11,10 +11,10 @@ import rospy
 from nav_msgs.msg import OccupancyGrid
 
 from map_server.map_files import check_target, write_map
-from nav_nodes.complaints import Complaints
 from nav_nodes.messages import grid_of, yaw_of
+from nav_nodes.missing_data import MissingData
 from nav_nodes.program import init_node
-from nav_nodes.silence import is_published, why_silent
+from nav_nodes.topic_watchdog import is_published, why_silent
 
 POLL = 0.5  # s of wall time
 
@@ -31,9 +31,9 @@ class MapSaver:
 
     def wait(self) -> OccupancyGrid | None:
         """The first map received; None if the node is shut down before."""
-        complaints = Complaints()
+        missing_data = MissingData()
         while not self._came.wait(POLL) and not rospy.is_shutdown():
-            complaints.missing(f"map on {self._maps.resolved_name}", self._why())
+            missing_data.missing(f"map on {self._maps.resolved_name}", self._why())
         return self._message
 
     def _take(self, message: OccupancyGrid) -> None:

@@ -21,9 +21,9 @@ from map_server.errors import MapFileError, MapImageError, MapMetadataError, Map
 from map_server.map_files import load_map, read_map
 from map_server.metadata import COARSEST, FINEST, MapMetadata
 from nav_nodes import clock
-from nav_nodes.complaints import Complaints
 from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.messages import LoadedMapAnswer, MapAnswer, grid_message, quaternion_of
+from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
 
@@ -91,7 +91,7 @@ def main() -> int:
     except (MapFileError, ParameterError) as error:
         rospy.logerr("%s", error)
         return FAILED
-    if clock.wait_until_it_runs(Complaints()):  # a map's stamp must not be 0
+    if clock.wait_until_it_runs(MissingData()):  # a map's stamp must not be 0
         MapServer(loaded, values["frame_id"])
         spin()
     return 0

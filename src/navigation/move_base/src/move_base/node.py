@@ -31,9 +31,9 @@ from move_base.status import keep_telling
 from move_base.watch import Watch
 from nav_algorithms.costmap.footprint import reach
 from nav_nodes import clock
-from nav_nodes.complaints import Complaints
 from nav_nodes.ignored import below, warn_of_ignored
 from nav_nodes.messages import stamped_pose
+from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, read_parameters, serve_changes
 from nav_nodes.program import init_node, spin
 from nav_nodes.transforms import Transforms
@@ -49,11 +49,11 @@ class MoveBase:
         """Raises ParameterError for invalid parameters, including unknown planners."""
         values = self._values = read_parameters(table("move_base"))
         kinds = self._planner_kinds(values)
-        complaints = Complaints()
-        clock.watch(complaints)
-        self._transforms = Transforms(complaints)
-        self._costmaps = (CostmapROS("global_costmap", self._transforms, complaints),
-                          CostmapROS("local_costmap", self._transforms, complaints))
+        missing_data = MissingData()
+        clock.watch(missing_data)
+        self._transforms = Transforms(missing_data)
+        self._costmaps = (CostmapROS("global_costmap", self._transforms, missing_data),
+                          CostmapROS("local_costmap", self._transforms, missing_data))
         frames = [costmap.global_frame for costmap in self._costmaps]
         self._transforms.chain = *dict.fromkeys(frames), self._costmaps[0].base_frame
         self._global_planner = kinds[0](self._costmaps[0])
@@ -67,7 +67,7 @@ class MoveBase:
         planning = Planning(self._machine, self._plan, self._period)
         self._navigator = Navigator(
             self._costmaps, self._transforms, self._base,
-            Watch(self._costmaps, self._base, self._transforms.buffer, complaints),
+            Watch(self._costmaps, self._base, self._transforms.buffer, missing_data),
             self._machine, planning, driver, recoveries)
         self._current_goal = rospy.Publisher("~current_goal", PoseStamped, queue_size=1)
         self._server = actionlib.SimpleActionServer("move_base", MoveBaseAction, self._execute,

@@ -8,9 +8,9 @@ import rospy
 import tf2_ros
 
 from costmap_2d import CostmapROS
-from costmap_2d.news import News
+from costmap_2d.message_age import MessageAge
 from move_base.base import Base
-from nav_nodes.complaints import Complaints
+from nav_nodes.missing_data import MissingData
 
 STANDS = "the robot stands until it is there again"
 PAUSE = 1.0  # s between two checks; after a longer one, e.g. between goals, old data is dropped
@@ -29,10 +29,10 @@ class Watch:
     """Checks costmaps, sensors, transforms and odometry. Called by one thread."""
 
     def __init__(self, costmaps: tuple[CostmapROS, CostmapROS], base: Base,
-                 buffer: tf2_ros.Buffer, complaints: Complaints) -> None:
+                 buffer: tf2_ros.Buffer, missing_data: MissingData) -> None:
         """`costmaps`: the global and the local one."""
         self._costmaps, self._base, self._buffer = costmaps, base, buffer
-        self._complaints = complaints
+        self._missing_data = missing_data
         self._seen: _Seen | None = None
         self._orphaned: set[str] = set()
 
@@ -77,16 +77,16 @@ class Watch:
         return False
 
     def _sensors_speak(self, timeout: float) -> bool:
-        speaking = [self._speaks(news, timeout) for news in self._costmaps[1].news()]
+        speaking = [self._speaks(ages, timeout) for ages in self._costmaps[1].ages()]
         return all(speaking)  # a list, so that each silent one is logged
 
-    def _speaks(self, news: News, timeout: float) -> bool:
+    def _speaks(self, ages: MessageAge, timeout: float) -> bool:
         """Whether a sensor sends usable data. A missing transform is logged separately."""
-        silent = abs(news.heard) > timeout  # below 0: heard before the clock was set back
-        useless = not silent and abs(news.placed) > timeout
-        self._say(news.what, silent)
-        if news.why or not useless:
-            self._say(news.usable, useless, news.why)
+        silent = abs(ages.heard) > timeout  # below 0: heard before the clock was set back
+        useless = not silent and abs(ages.placed) > timeout
+        self._say(ages.what, silent)
+        if ages.why or not useless:
+            self._say(ages.usable, useless, ages.why)
         return not (silent or useless)
 
     def _odometry_speaks(self, now: float, timeout: float) -> bool:
@@ -120,7 +120,7 @@ class Watch:
 
     def _say(self, what: str, missing: bool, why: str = "", is_result: bool = False) -> None:
         if missing:
-            self._complaints.missing(what, f"{why}; {STANDS}" if why else STANDS,
+            self._missing_data.missing(what, f"{why}; {STANDS}" if why else STANDS,
                                      is_result=is_result)
         else:
-            self._complaints.present(what)
+            self._missing_data.present(what)

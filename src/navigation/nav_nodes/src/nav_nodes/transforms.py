@@ -10,9 +10,9 @@ import rospy
 import tf2_ros
 from geometry_msgs.msg import Transform, TransformStamped
 
-from nav_nodes.complaints import Complaints
-from nav_nodes.links import Link, known_links, weakest
 from nav_nodes.messages import yaw_of
+from nav_nodes.missing_data import MissingData
+from nav_nodes.tf_gaps import TfLink, known_links, weakest
 
 NEWEST = rospy.Time(0)
 POLL = 0.01  # s of wall time
@@ -27,13 +27,13 @@ class Transforms:
     Waits in wall time, as the simulated clock may be paused.
     """
 
-    def __init__(self, complaints: Complaints, chain: tuple[str, ...] = (),
+    def __init__(self, missing_data: MissingData, chain: tuple[str, ...] = (),
                  cache_s: float = 30.0) -> None:
         """`chain`: frames, each of which should be known in the previous one; may be set later."""
         self.chain = chain
         self.buffer = tf2_ros.Buffer(rospy.Duration(cache_s))
         self._listener = tf2_ros.TransformListener(self.buffer)
-        self._complaints = complaints
+        self._missing_data = missing_data
         self._lock = threading.Lock()
         self._blamed: dict[tuple[str, str], str] = {}  # by the frames requested
 
@@ -87,9 +87,9 @@ class Transforms:
             settled = self._settled(parent, child) - {what}
             self._blamed[parent, child] = what
         for other in settled:
-            self._complaints.present(other)
+            self._missing_data.present(other)
         is_localisation = len(self.chain) > 2 and link.parent == self.chain[0]
-        self._complaints.missing(what, why, patience, is_result=is_localisation
+        self._missing_data.missing(what, why, patience, is_result=is_localisation
                                  and link.newest is not None)
 
     def _trust(self, parent: str, child: str) -> None:
@@ -98,14 +98,14 @@ class Transforms:
         with self._lock:
             settled = self._settled(parent, child)
         for what in settled:
-            self._complaints.present(what)
+            self._missing_data.present(what)
 
     def _settled(self, parent: str, child: str) -> set[str]:
         """What was blamed for these two frames, unless it still is for others."""
         return {self._blamed.pop((parent, child), None)} - {None, *self._blamed.values()}
 
 
-def _fault(link: Link, stamp: rospy.Time) -> tuple[str, str, float | None]:
+def _fault(link: TfLink, stamp: rospy.Time) -> tuple[str, str, float | None]:
     """What is missing, why, and the patience with it, for an unavailable transform."""
     name = f"transform from {link.parent} to {link.child}"
     if link.newest is None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from geometry_msgs.msg import Transform
 
-from nav_nodes.complaints import Complaints
+from nav_nodes.missing_data import MissingData
 from nav_nodes.transforms import Transforms
 
 LEVEL = 0.02  # largest 1 - |cosine| of a laser's tilt: about 11 degrees
@@ -34,9 +34,9 @@ class Mount:
 class Mounts:
     """Mounts of all lasers of one robot; each is fixed, so it is looked up once."""
 
-    def __init__(self, base: str, transforms: Transforms, complaints: Complaints) -> None:
+    def __init__(self, base: str, transforms: Transforms, missing_data: MissingData) -> None:
         """`base`: name of the robot's frame."""
-        self._base, self._transforms, self._complaints = base, transforms, complaints
+        self._base, self._transforms, self._missing_data = base, transforms, missing_data
         self._known: dict[str, Mount] = {}
 
     def of(self, laser: str) -> Mount | None:
@@ -51,7 +51,7 @@ class Mounts:
         try:
             self._known[laser] = Mount.of(found)
         except ValueError as error:
-            self._complaints.missing(what, str(error))
+            self._missing_data.missing(what, str(error))
             return None
-        self._complaints.present(what)
+        self._missing_data.present(what)
         return self._known[laser]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class News:
+class MessageAge:
     """Ages are s of ROS time; negative: from before the clock was set back.
 
     `what`: "LaserScan on /scan"; `placed`: age of the newest message that tf can transform to the

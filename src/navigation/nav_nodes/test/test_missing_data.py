@@ -3,15 +3,15 @@
 import pytest
 import rospy
 
-from nav_nodes import complaints
-from nav_nodes.complaints import Complaints
+from nav_nodes import missing_data
+from nav_nodes.missing_data import MissingData
 
 
 @pytest.fixture
 def say(monkeypatch):
-    """Lets time run and collects (s, line); `say.complaints` are to be used."""
+    """Lets time run and collects (s, line); `say.missing_data` are to be used."""
     at = {"now": 0.0}
-    monkeypatch.setattr(complaints.time, "monotonic", lambda: at["now"])
+    monkeypatch.setattr(missing_data.time, "monotonic", lambda: at["now"])
     lines = []
     monkeypatch.setattr(rospy, "logwarn", lambda text, *values: lines.append(
         (at["now"], text % values)))
@@ -26,42 +26,42 @@ def say(monkeypatch):
             act(at["now"])
         return list(lines)
 
-    run.complaints = Complaints()
+    run.missing_data = MissingData()
     return run
 
 
 def test_one_thing_is_said_after_a_second_and_then_every_five(say):
-    assert say(12.0, lambda _: say.complaints.missing("map", "start map_server")) == [
+    assert say(12.0, lambda _: say.missing_data.missing("map", "start map_server")) == [
         (1.75, "no map for 2 s: start map_server"), (6.75, "no map for 6 s: start map_server"),
         (11.75, "no map for 12 s: start map_server")]
 
 
 def test_what_comes_back_in_time_is_never_said(say):
     def now_and_then(now):
-        (say.complaints.missing if now % 1.0 else say.complaints.present)("map")
+        (say.missing_data.missing if now % 1.0 else say.missing_data.present)("map")
     assert say(20.0, now_and_then) == []
 
 
 def test_there_again_is_said_once_and_the_next_absence_begins_anew(say):
-    say(3.0, lambda _: say.complaints.missing("map"))
-    assert say(4.0, lambda _: say.complaints.present("map")) == [(3.25, "map: there again")]
-    assert say(6.0, lambda _: say.complaints.missing("map")) == [(5.75, "no map for 2 s")]
+    say(3.0, lambda _: say.missing_data.missing("map"))
+    assert say(4.0, lambda _: say.missing_data.present("map")) == [(3.25, "map: there again")]
+    assert say(6.0, lambda _: say.missing_data.missing("map")) == [(5.75, "no map for 2 s")]
 
 
 def test_two_things_at_a_time_are_one_line(say):
     def both(now):
-        say.complaints.missing("map")
+        say.missing_data.missing("map")
         if now > 0.25:
-            say.complaints.missing("scan", "is the laser on?")
+            say.missing_data.missing("scan", "is the laser on?")
     assert say(7.0, both) == [(1.75, "no map for 2 s; no scan for 1 s: is the laser on?"),
                               (6.75, "no map for 6 s; no scan for 6 s: is the laser on?")]
 
 
 def test_what_comes_later_is_said_when_it_comes_and_then_with_the_first(say):
     def later(now):
-        say.complaints.missing("map")
+        say.missing_data.missing("map")
         if now > 2.0:
-            say.complaints.missing("scan")
+            say.missing_data.missing("scan")
     assert say(14.0, later) == [(1.75, "no map for 2 s"), (3.75, "no scan for 2 s"),
                                 (8.75, "no map for 8 s; no scan for 6 s"),
                                 (13.75, "no map for 14 s; no scan for 12 s")]
@@ -69,44 +69,44 @@ def test_what_comes_later_is_said_when_it_comes_and_then_with_the_first(say):
 
 def test_while_a_root_is_missing_nothing_else_is_said(say):
     def all_of_it(now):
-        say.complaints.missing("scan")
+        say.missing_data.missing("scan")
         if now < 7.0:
-            say.complaints.missing("clock", is_root=True)
+            say.missing_data.missing("clock", is_root=True)
         else:
-            say.complaints.present("clock")
+            say.missing_data.present("clock")
     assert say(8.0, all_of_it) == [(1.75, "no clock for 2 s"), (6.75, "no clock for 6 s"),
                                    (7.0, "clock: there again"), (7.25, "no scan for 7 s")]
 
 
 def test_a_result_is_not_said_with_its_cause(say):
     def three(now):
-        say.complaints.missing("localisation", is_result=True)
+        say.missing_data.missing("localisation", is_result=True)
         if now < 9.0:
-            say.complaints.missing("laser", patience=5.0)
+            say.missing_data.missing("laser", patience=5.0)
         else:
-            say.complaints.present("laser")
+            say.missing_data.present("laser")
     assert say(9.25, three) == [(5.75, "no laser for 6 s"), (9.0, "laser: there again"),
                                 (9.25, "no localisation for 9 s")]
 
 
 def test_what_is_missing_for_long_is_no_cause(say):
     def two(now):
-        say.complaints.missing("bumper")
+        say.missing_data.missing("bumper")
         if now > 20.0:
-            say.complaints.missing("localisation", is_result=True)
+            say.missing_data.missing("localisation", is_result=True)
     say(20.0, two)
     assert say(21.75, two) == [(21.75, "no localisation for 2 s")]
 
 
 def test_the_least_patient_counts_and_how_long_it_was_missing_before(say):
     def two(_):
-        say.complaints.missing("scan", "is the laser on?", patience=5.0)
-        say.complaints.missing("scan", "the robot stands", since=-2.0)
+        say.missing_data.missing("scan", "is the laser on?", patience=5.0)
+        say.missing_data.missing("scan", "the robot stands", since=-2.0)
     assert say(1.0, two) == [(0.25, "no scan for 2 s: the robot stands")]
 
 
 def test_what_nobody_asks_about_any_more_is_not_missing(say):
-    say(3.0, lambda _: say.complaints.missing("odometry"))
+    say(3.0, lambda _: say.missing_data.missing("odometry"))
     assert say(30.0, lambda _: None) == []
-    assert say(32.0, lambda _: say.complaints.missing("odometry")) == [
+    assert say(32.0, lambda _: say.missing_data.missing("odometry")) == [
         (31.75, "no odometry for 2 s")]

@@ -5,7 +5,7 @@ import rospy
 import tf2_py
 from geometry_msgs.msg import TransformStamped
 
-from nav_nodes.links import Link, known_links, weakest
+from nav_nodes.tf_gaps import TfLink, known_links, weakest
 
 CHAIN = ("map", "odom", "base")
 
@@ -36,15 +36,15 @@ def links(*known):
      ("odom", "base")),
     ([("odom", "bass", 5), ("bass", "laser", 0)], ("base", "laser"), ("odom", "base"))])
 def test_what_never_came(known, asked, blamed):
-    assert weakest(links(*known), *asked, CHAIN) == Link(*blamed, None)
+    assert weakest(links(*known), *asked, CHAIN) == TfLink(*blamed, None)
 
 
 @pytest.mark.parametrize("known, asked, blamed", [
-    ([("map", "odom", 7), ("odom", "base", 5)], ("map", "base"), Link("odom", "base", 5.0)),
-    ([("map", "odom", 5), ("odom", "base", 7)], ("map", "base"), Link("map", "odom", 5.0)),
-    ([("map", "odom", 5), ("odom", "base", 5.2)], ("map", "base"), Link("odom", "base", 5.2)),
-    ([("odom", "base", 5), ("base", "laser", 0)], ("odom", "laser"), Link("odom", "base", 5.0)),
-    ([("odom", "base", 5), ("base", "laser", 0)], ("laser", "odom"), Link("odom", "base", 5.0)),
-    ([("base", "laser", 0)], ("base", "laser"), Link("base", "laser", 0.0))])
+    ([("map", "odom", 7), ("odom", "base", 5)], ("map", "base"), TfLink("odom", "base", 5.0)),
+    ([("map", "odom", 5), ("odom", "base", 7)], ("map", "base"), TfLink("map", "odom", 5.0)),
+    ([("map", "odom", 5), ("odom", "base", 5.2)], ("map", "base"), TfLink("odom", "base", 5.2)),
+    ([("odom", "base", 5), ("base", "laser", 0)], ("odom", "laser"), TfLink("odom", "base", 5.0)),
+    ([("odom", "base", 5), ("base", "laser", 0)], ("laser", "odom"), TfLink("odom", "base", 5.0)),
+    ([("base", "laser", 0)], ("base", "laser"), TfLink("base", "laser", 0.0))])
 def test_the_oldest_of_what_came(known, asked, blamed):
     assert weakest(links(*known), *asked, CHAIN) == blamed

@@ -26,7 +26,7 @@ class _Absence:
     said: float | None = None
 
 
-class Complaints:
+class MissingData:
     """Records since when each item has been missing. One per node; thread-safe.
 
     Uses wall time, because a running simulated clock is one of the items that can be missing.

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 import rospy
 
-from nav_nodes.complaints import Complaints
+from nav_nodes.missing_data import MissingData
 
 QUIET = 1.0  # s of wall time without a message until it is reported
 
@@ -30,12 +30,12 @@ def why_silent(topic: rospy.Subscriber, name: str) -> str:
             f"{topic.resolved_name}, or {name}:=TOPIC)")
 
 
-class Silence:
+class TopicWatchdog:
     """Notices that a topic is silent, except while a message from it is being processed."""
 
-    def __init__(self, complaints: Complaints, what: str, name: str) -> None:
+    def __init__(self, missing_data: MissingData, what: str, name: str) -> None:
         """`what`: the topic's content ("laser scans"); `name`: its name in the node ("scan")."""
-        self._complaints, self._what, self._name = complaints, what, name
+        self._missing_data, self._what, self._name = missing_data, what, name
         self._last, self._at_work = time.monotonic(), False
 
     @contextmanager
@@ -51,6 +51,6 @@ class Silence:
         """Call periodically: logs how long it has been silent."""
         what = f"{self._what} on {topic.resolved_name}"
         if not self._at_work and time.monotonic() - self._last > QUIET:
-            self._complaints.missing(what, why_silent(topic, self._name), since=self._last)
+            self._missing_data.missing(what, why_silent(topic, self._name), since=self._last)
         else:
-            self._complaints.present(what)
+            self._missing_data.present(what)
