@@ -13,7 +13,7 @@ from gazebo_msgs.msg import ContactsState
 from nav_msgs.msg import Odometry, Path
 from trial_venue import TOUCHED
 
-from nav_algorithms.trajectory_error import TrajectoryError, at_moments, trajectory_error
+from evaluation.trajectory_error import TrajectoryError, at_moments, trajectory_error
 from nav_nodes.messages import pose_of, yaw_of
 
 STANDING = 0.03  # m/s: slower is no driving, neither forwards nor backwards

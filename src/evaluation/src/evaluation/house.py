@@ -15,9 +15,9 @@ from nav_msgs.msg import Path as PathMessage
 from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 
+from evaluation.trajectory_error import at_moments
 from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.poses import compose, wrap_angle
-from nav_algorithms.trajectory_error import at_moments
 from run_session import simulator
 from run_session.files import Length, find_package, load_record, located
 from run_session.observer import ServicePoller

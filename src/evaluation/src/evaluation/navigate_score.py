@@ -10,10 +10,10 @@ from typing import ClassVar
 import numpy as np
 
 from evaluation.house import Contact, Records
+from evaluation.map_agreement import MapAgreement, map_agreement
 from evaluation.report import table
+from evaluation.trajectory_error import TrajectoryError, trajectory_error
 from nav_algorithms.grid import FREE, UNKNOWN, OccupancyGrid
-from nav_algorithms.map_agreement import MapAgreement, map_agreement
-from nav_algorithms.trajectory_error import TrajectoryError, trajectory_error
 from run_session.failure import RunError
 from trial_worlds.house import Ground, visible_walls
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from evaluation.map_agreement import map_agreement
 from nav_algorithms.grid import OccupancyGrid
-from nav_algorithms.map_agreement import map_agreement
 
 
 def room():

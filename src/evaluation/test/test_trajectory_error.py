@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from evaluation.trajectory_error import align, at_moments, trajectory_error
 from nav_algorithms.poses import compose, invert
-from nav_algorithms.trajectory_error import align, at_moments, trajectory_error
 
 
 def circle(count=50):

@@ -1,4 +1,4 @@
-"""How well a built map agrees with the true walls: two shares, because one alone says little."""
+"""How well a built map agrees with the true walls: precision and recall of occupied cells."""
 
 from __future__ import annotations
 
