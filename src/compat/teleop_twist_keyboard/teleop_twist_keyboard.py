@@ -63,7 +63,7 @@ FACTORS = {  # key -> what it multiplies speed and turn by
 
 
 @dataclass
-class Drive:
+class KeyedSpeeds:
     """What the keys have asked for so far."""
 
     speed: float  # m/s
@@ -111,7 +111,7 @@ class CommandTopic:
             time.sleep(0.5)
             seconds += 0.5
 
-    def send(self, drive: Drive) -> None:
+    def send(self, drive: KeyedSpeeds) -> None:
         twist = Twist()
         forward, left, up, turning = drive.move
         twist.linear.x = forward * drive.speed
@@ -148,7 +148,7 @@ def read_keys(terminal: int, wait: float) -> list[str]:
     return KEY.findall(typed) or [CTRL_C]
 
 
-def drive_by_keys(terminal: int, topic: CommandTopic, drive: Drive) -> None:
+def drive_by_keys(terminal: int, topic: CommandTopic, drive: KeyedSpeeds) -> None:
     """Until Ctrl-C or the end of ROS. A rate or timeout of 0 means none, as upstream's."""
     repeat_rate, key_timeout = read_number("repeat_rate", 0.0), read_number("key_timeout", 0.0)
     period = 1.0 / repeat_rate if repeat_rate > 0 else float("inf")  # s
@@ -195,7 +195,7 @@ def main() -> None:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, stop)
     rospy.init_node("teleop_twist_keyboard", disable_signals=True)
-    drive = Drive(read_number("speed", 0.5), read_number("turn", 1.0),
+    drive = KeyedSpeeds(read_number("speed", 0.5), read_number("turn", 1.0),
                   read_number("speed_limit", 1000.0), read_number("turn_limit", 1000.0))
     topic = CommandTopic()
     terminal = sys.stdin.fileno()

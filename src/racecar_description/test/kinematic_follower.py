@@ -15,7 +15,7 @@ ROWS = range(900, 920)  # 5h/6 and 20 rows on, as the tutorial has it
 
 
 @dataclass(frozen=True)
-class Drive:
+class SimulatedDrive:
     """What a simulated drive did, sample by sample."""
 
     times: np.ndarray  # s
@@ -49,7 +49,7 @@ def drive(
     gain: float = 1e-3,
     rate_hz: int = 30,
     delay_frames: int = 1,
-) -> Drive:
+) -> SimulatedDrive:
     """Drive from the world's origin, heading +x; where the line is lost the car stops."""
     camera, step = LineCamera(track), 1.0 / rate_hz
     x = y = yaw = 0.0
@@ -65,4 +65,4 @@ def drive(
         y += forward * step * math.sin(yaw + turn * step / 2)
         yaw += turn * step
         poses.append((x, y, yaw))
-    return Drive(np.arange(1, len(poses) + 1) * step, np.array(poses), lost)
+    return SimulatedDrive(np.arange(1, len(poses) + 1) * step, np.array(poses), lost)

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 import yaml
 from racecar_description.track.centre_line import CentreLine
+from racecar_description.track.circuit import road_width
 from racecar_description.track.clearance import touching_place
 from racecar_description.track.closed_line import load_track
 from racecar_description.track.command import main
-from racecar_description.track.course import road_width
 from racecar_description.track.from_numbers import from_seed
 from racecar_description.track.track_file import load_track_file
 from racecar_description.track.wishes import Wishes

@@ -16,7 +16,7 @@ LIMIT = 60.0  # s, for whatever is waited for
 FORWARD, RIGHT, LEFT = (0.3, 0.0), (0.0, -1.5), (0.0, 1.5)
 
 
-class Drive(unittest.TestCase):
+class DriveTest(unittest.TestCase):
     def setUp(self):
         self.told, self.arrived = [], threading.Condition()
         self.scan = rospy.Publisher("/scan", LaserScan, queue_size=1, latch=True)
@@ -72,4 +72,4 @@ class Drive(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("drive_by_made_up_scans")
-    rostest.rosrun("turtlebot3_gazebo", "drive", Drive, sys.argv)
+    rostest.rosrun("turtlebot3_gazebo", "drive", DriveTest, sys.argv)

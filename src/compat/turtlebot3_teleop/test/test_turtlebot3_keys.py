@@ -1,13 +1,13 @@
 """The keys' arithmetic against upstream's steps, slopes and limits; needs no master."""
 
 import pytest
-from turtlebot3_teleop.keys import Drive, limits, press, smooth
+from turtlebot3_teleop.keys import KeyedSpeeds, limits, press, smooth
 
 WAFFLE = limits("waffle")
 
 
 def after(keys, model="waffle"):
-    drive = Drive()
+    drive = KeyedSpeeds()
     for key in keys:
         drive = press(drive, key, limits(model))
     return drive
@@ -44,11 +44,11 @@ def test_what_is_sent_follows_in_small_steps():
 
 
 def test_slowing_down_is_smooth_too():
-    drive = Drive(linear_target=0.0, linear=0.012, angular_target=-0.02, angular=0.04)
-    assert smooth(drive) == Drive(0.0, -0.02, 0.007, -0.01)
-    assert smooth(smooth(drive)) == Drive(0.0, -0.02, 0.002, -0.02)
+    drive = KeyedSpeeds(linear_target=0.0, linear=0.012, angular_target=-0.02, angular=0.04)
+    assert smooth(drive) == KeyedSpeeds(0.0, -0.02, 0.007, -0.01)
+    assert smooth(smooth(drive)) == KeyedSpeeds(0.0, -0.02, 0.002, -0.02)
 
 
 @pytest.mark.parametrize("key", [" ", "s"])
 def test_stop_keys_stop_at_once(key):
-    assert press(smooth(after("wwwaa")), key, WAFFLE) == Drive()
+    assert press(smooth(after("wwwaa")), key, WAFFLE) == KeyedSpeeds()

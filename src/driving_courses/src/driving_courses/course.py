@@ -32,7 +32,7 @@ class FeatureSpec:
 
 
 @dataclass(frozen=True)
-class Course:
+class CourseSpec:
     """A file of courses/, key by key; m, rad, s."""
 
     task: str
@@ -66,7 +66,7 @@ class Course:
             find_file(f"evaluation/courses/{self.course}.yaml").read_text(encoding="utf-8"))
 
 
-def load_course(name: str | Path) -> Course:
+def load_course(name: str | Path) -> CourseSpec:
     """The course of that name in courses/, or of a .yaml file; CourseError names file and key."""
     path = FOLDER / f"{name}.yaml" if not str(name).endswith(".yaml") else Path(name)
     try:
@@ -77,7 +77,7 @@ def load_course(name: str | Path) -> Course:
     except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         raise CourseError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") \
             from error
-    course = _fill(Course, values, str(path))
+    course = _fill(CourseSpec, values, str(path))
     for key, known in CHOICES.items():
         if getattr(course, key) not in known:
             raise CourseError(f"{path}: {key}: must be one of {', '.join(map(repr, known))},"

@@ -30,7 +30,7 @@ from bullet_sim.world import World
 from driving_courses.packages import find_file
 
 
-class Drive(Protocol):
+class Drivetrain(Protocol):
     """A robot's wheels."""
 
     steers: bool  # whether it takes a steering angle (rad) instead of a rate of yaw (rad/s)

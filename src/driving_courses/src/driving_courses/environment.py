@@ -10,7 +10,7 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from driving_courses.course import Course, load_course
+from driving_courses.course import CourseSpec, load_course
 from driving_courses.errors import CourseError
 from driving_courses.features import feature_count, find_features
 from driving_courses.randomisation import Randomisation, draw
@@ -99,7 +99,7 @@ class CourseEnv(gymnasium.Env):
         return find_features(self._picture, self._features) if self._features else self._picture
 
 
-def _actions(course: Course, ackermann: bool) -> spaces.Box:
+def _actions(course: CourseSpec, ackermann: bool) -> spaces.Box:
     most = course.steering_angle if ackermann else course.turn
     slowest, fastest = course.speeds
     return spaces.Box(np.array([slowest, -most], np.float32),

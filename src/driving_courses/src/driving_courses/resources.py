@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from bullet_sim.formats.resources import Resources
-from driving_courses.course import Course
+from driving_courses.course import CourseSpec
 from driving_courses.packages import find_file, find_package
 
 
@@ -14,7 +14,7 @@ def package_folder(name: str) -> str:
     return str(find_package(name))
 
 
-def resources(course: Course, models: tuple[Path, ...] = ()) -> Resources:
+def resources(course: CourseSpec, models: tuple[Path, ...] = ()) -> Resources:
     """`models`: folders in which models are found first."""
     library = Resources.from_environment({"HOME": "/nonexistent"})
     return Resources(

@@ -18,7 +18,7 @@ from bullet_sim.rendering.renderer import Renderer, open_renderer
 from bullet_sim.sensors.camera import Camera
 from bullet_sim.tick_rate import TickRate
 from bullet_sim.world import World
-from driving_courses.course import Course
+from driving_courses.course import CourseSpec
 from driving_courses.drives import DRIVES
 from driving_courses.errors import CourseError
 from driving_courses.packages import find_file
@@ -35,7 +35,7 @@ class Simulation:
     The renderer is opened with the first episode: until then a process may be forked.
     """
 
-    def __init__(self, course: Course, size: tuple[int, int], timestep: float | None = None):
+    def __init__(self, course: CourseSpec, size: tuple[int, int], timestep: float | None = None):
         """`size`: width and height of the camera's pictures, px; `timestep`: of the engine, s,
         None: as the world says."""
         self._course, self._size, self._timestep = course, size, timestep

@@ -15,7 +15,7 @@ from ai_robot_tracking.scenes.world_file import world_text
 
 from bullet_sim.description import WorldDescription
 from bullet_sim.formats.loading import load_world
-from driving_courses.course import Course
+from driving_courses.course import CourseSpec
 from driving_courses.packages import find_file
 from driving_courses.randomisation import Episode
 from driving_courses.resources import resources
@@ -48,7 +48,7 @@ class LapTask:
     A drive ends as `make course` ends it: laps closed, off the course, stalled, the wrong way.
     """
 
-    def __init__(self, course: Course, laps: int):
+    def __init__(self, course: CourseSpec, laps: int):
         self._venues, self._off_course, self._laps = Venues(course), course.off_course, laps
 
     def begin(self, episode: Episode) -> tuple[WorldDescription, Start]:
@@ -83,7 +83,7 @@ class FollowTask:
     the band that still counts as kept, -1 at worst. It ends as `make track` ends it, and where the
     distance was not kept."""
 
-    def __init__(self, course: Course):
+    def __init__(self, course: CourseSpec):
         self._course = course
         settings = find_file("ai_robot_tracking/config/tracking_params.yaml")
         self._wanted = float(yaml.safe_load(settings.read_text(encoding="utf-8"))[
@@ -125,6 +125,6 @@ class FollowTask:
         }
 
 
-def open_task(course: Course, laps: int) -> Task:
+def open_task(course: CourseSpec, laps: int) -> Task:
     """What the course's file says."""
     return LapTask(course, laps) if course.task == "lap" else FollowTask(course)

@@ -16,7 +16,7 @@ from racecar_description.track.wishes import Wishes
 
 from bullet_sim.description import WorldDescription
 from bullet_sim.formats.loading import load_world
-from driving_courses.course import Course
+from driving_courses.course import CourseSpec
 from driving_courses.errors import CourseError
 from driving_courses.packages import find_file
 from driving_courses.resources import resources
@@ -36,7 +36,7 @@ class Venue:
 class Venues:
     """A course's own venue, and random ones; each is made once."""
 
-    def __init__(self, course: Course):
+    def __init__(self, course: CourseSpec):
         self._course = course
         self._made: dict[int | None, Venue] = {}
         self._folder: TemporaryDirectory | None = None

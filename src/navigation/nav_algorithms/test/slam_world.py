@@ -25,7 +25,7 @@ RING = ((1, 1), (13, 1), (13, 7), (1, 7), (1, 1), (5, 1))  # once round and on: 
 
 
 @dataclass(frozen=True)
-class Drive:
+class RecordedDrive:
     """True poses (N, 3), the odometry's (N, 3), and scans (N, 360), m."""
 
     truth: np.ndarray
@@ -48,7 +48,7 @@ def walls() -> np.ndarray:
 
 
 def drive(corners: tuple, step: float, seed: int, along: float = 0.05,
-          turning: float = np.radians(3)) -> Drive:
+          turning: float = np.radians(3)) -> RecordedDrive:
     """Along the corners in steps of so many m; the odometry is off by so much a root metre."""
     random = np.random.default_rng(seed)
     truth = _path(np.array(corners, float), step)
@@ -63,7 +63,7 @@ def drive(corners: tuple, step: float, seed: int, along: float = 0.05,
     occupied = walls()
     scans = np.array([rays.cast(occupied, CELL, *ORIGIN, x, y, yaw + ANGLES, RANGE_MAX)
                       for x, y, yaw in truth])
-    return Drive(truth, np.array(odometry), scans + random.normal(0, 0.01, scans.shape))
+    return RecordedDrive(truth, np.array(odometry), scans + random.normal(0, 0.01, scans.shape))
 
 
 def trajectory_error(found: np.ndarray, truth: np.ndarray) -> float:

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from defaults import of
-from slam_world import CELL, ORIGIN, RANGE_MAX, RING, Drive, drive, trajectory_error, walls
+from slam_world import CELL, ORIGIN, RANGE_MAX, RING, RecordedDrive, drive, trajectory_error, walls
 
 from nav_algorithms import likelihood_field
 from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN
@@ -39,7 +39,7 @@ def test_good_odometry_is_trusted_and_a_slip_is_seen_all_the_same():
     slipped = good.odometry.copy()
     slipped[60:, :2] += (0.05, -0.03)
     slam = ParticleSlam(SETTINGS, 0)
-    used = Drive(good.truth, slipped, good.scans).run(slam)
+    used = RecordedDrive(good.truth, slipped, good.scans).run(slam)
     off = np.hypot(*(slam.trajectory()[1] - good.truth[used])[:, :2].T)
     assert off[np.array(used) < 60].max() < 0.04
     assert off[-1] < 0.03

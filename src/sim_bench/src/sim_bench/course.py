@@ -24,7 +24,7 @@ SETTLING_STEPS = 300
 WAFFLE_DRIVE = DiffDriveParameters(0.287, 0.066, 1.0, 10.0)
 
 
-class Course:
+class CourseWorld:
     """The world of 0course.launch. Close it: the engine holds a fixed number of worlds."""
 
     def __init__(self) -> None:

@@ -17,7 +17,7 @@ from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.world import World
 from run_session.failure import RunError
-from sim_bench.course import Course
+from sim_bench.course import CourseWorld
 from sim_bench.pybullet_drawing import PybulletDrawing
 
 OURS, TINY, PLUGIN = "ours", "tiny", "plugin"
@@ -109,7 +109,7 @@ def _serve(kind: str, pipe: Connection) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # who started us closes the pipe
     os.dup2(os.open(os.devnull, os.O_WRONLY), STDOUT)  # the plugin prints while it draws
     try:
-        course = Course()
+        course = CourseWorld()
         waffle = course.spawn_waffle()
         drawing = _open(kind, course.world)
     except Exception as error:  # whatever it is, the other side says it
@@ -130,7 +130,7 @@ def _open(kind: str, world: World) -> _OurDrawing | PybulletDrawing:
     return PybulletDrawing(world.update_scene(), plugin=kind == PLUGIN)
 
 
-def _timed(task: Task, drawing: _OurDrawing | PybulletDrawing, course: Course,
+def _timed(task: Task, drawing: _OurDrawing | PybulletDrawing, course: CourseWorld,
            waffle: Model) -> Answer:
     seconds = []
     for left in range(task.frames, -1, -1):

@@ -23,7 +23,7 @@ STOP_KEYS = (" ", "s")
 
 
 @dataclass(frozen=True)
-class Drive:
+class KeyedSpeeds:
     """Velocities asked for, and those that are sent; m/s forward and rad/s to the left."""
 
     linear_target: float = 0.0
@@ -37,10 +37,10 @@ def limits(model: str) -> tuple[float, float]:
     return LIMITS.get(model, LIMITS["burger"])
 
 
-def press(drive: Drive, key: str, highest: tuple[float, float]) -> Drive:
+def press(drive: KeyedSpeeds, key: str, highest: tuple[float, float]) -> KeyedSpeeds:
     """After this key; one that means nothing changes nothing."""
     if key in STOP_KEYS:
-        return Drive()
+        return KeyedSpeeds()
     if key not in STEPS:
         return drive
     forward, left = STEPS[key]
@@ -51,7 +51,7 @@ def press(drive: Drive, key: str, highest: tuple[float, float]) -> Drive:
     )
 
 
-def smooth(drive: Drive) -> Drive:
+def smooth(drive: KeyedSpeeds) -> KeyedSpeeds:
     """One message later: what is sent has come a slope nearer to what was asked for."""
     return replace(
         drive,

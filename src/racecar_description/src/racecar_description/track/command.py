@@ -12,7 +12,7 @@ from pathlib import Path
 
 import cv2
 
-from racecar_description.track.course import LEAST_WIDTH, TURNING_CIRCLE, Course, road_width
+from racecar_description.track.circuit import LEAST_WIDTH, TURNING_CIRCLE, Circuit, road_width
 from racecar_description.track.drawing import parse_colour
 from racecar_description.track.errors import DrawingError, TrackError
 from racecar_description.track.from_drawing import from_drawing
@@ -100,7 +100,7 @@ def _is_installed(package: Path) -> bool:
     return package.parent.name == "share" and (package.parent.parent / "setup.sh").exists()
 
 
-def _course(options: argparse.Namespace, name: str) -> tuple[Course, list[str]]:
+def _course(options: argparse.Namespace, name: str) -> tuple[Circuit, list[str]]:
     wishes = Wishes(
         name=name, size=options.size, width=options.width, walls=options.walls,
         backwards=options.reverse, start=options.start, colour=options.road,
@@ -146,7 +146,7 @@ def _write_problem(error: DrawingError, folder: Path, name: str) -> str:
     return f" (marked in {path})"
 
 
-def _summary(course: Course, remarks: list[str], out: Path, package: Path) -> list[str]:
+def _summary(course: Circuit, remarks: list[str], out: Path, package: Path) -> list[str]:
     radius, x, y = course.line.tightest()
     road = road_width(course.lane_width)
     lines = [
@@ -165,7 +165,7 @@ def _summary(course: Course, remarks: list[str], out: Path, package: Path) -> li
     return [*lines, f"  {_next_command(course, out, package)}"]
 
 
-def _next_command(course: Course, out: Path, package: Path) -> str:
+def _next_command(course: Circuit, out: Path, package: Path) -> str:
     """The command that starts the car in this world, in a sourced workspace."""
     world = shlex.quote(str((out / world_path(course.name)).resolve()))
     x, y, heading = (f"{value:.6g}" for value in course.start)

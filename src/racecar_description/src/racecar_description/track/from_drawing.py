@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from racecar_description.track.centre_line import CentreLine, Corner
-from racecar_description.track.course import (
+from racecar_description.track.circuit import (
     CENTRE_LINE,
     LANE,
     LEAST_WIDTH,
-    Course,
+    Circuit,
     lane_width,
     road_width,
 )
@@ -39,7 +39,7 @@ WIDEST = 100.0  # m: bends of larger radius are written with this one, between s
 ODD_WIDTH = 0.2  # share of the usual half width: a larger deviation is a stain or a gap
 
 
-def from_drawing(path: Path, wishes: Wishes) -> tuple[Course, list[str]]:
+def from_drawing(path: Path, wishes: Wishes) -> tuple[Circuit, list[str]]:
     """A course along a picture's closed road, and remarks; DrawingError if it has none."""
     picture = read_picture(path)
     try:
@@ -62,7 +62,7 @@ def from_drawing(path: Path, wishes: Wishes) -> tuple[Course, list[str]]:
         raise DrawingError(f"{path}: {error}", picture, [mark]) from error
     check_start(wishes, origin, lane)
     sides = np.array(shape_px[::-1]) * scale
-    course = Course(
+    course = Circuit(
         name=wishes.name,
         source=path.name,
         line=line,

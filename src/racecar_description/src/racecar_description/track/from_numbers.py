@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from racecar_description.track.centre_line import CentreLine
-from racecar_description.track.course import (
+from racecar_description.track.circuit import (
     CENTRE_LINE,
     LANE,
-    Course,
+    Circuit,
     Plane,
     lane_width,
     road_width,
@@ -29,7 +29,7 @@ from racecar_description.track.wishes import (
 )
 
 
-def from_track_file(path: Path, wishes: Wishes) -> tuple[Course, list[str]]:
+def from_track_file(path: Path, wishes: Wishes) -> tuple[Circuit, list[str]]:
     """The course of a centre line, with its coordinates and, unless given, its widths."""
     track, line = load_centre_line(path)
     remarks: list[str] = []
@@ -44,7 +44,7 @@ def from_track_file(path: Path, wishes: Wishes) -> tuple[Course, list[str]]:
     check_start(wishes, line.pose(start_s)[:2], lane)
     points = line.points()
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    course = Course(
+    course = Circuit(
         name=wishes.name,
         source=path.name,
         line=line,
@@ -57,7 +57,7 @@ def from_track_file(path: Path, wishes: Wishes) -> tuple[Course, list[str]]:
     return course, remarks
 
 
-def from_seed(seed: int, wishes: Wishes) -> tuple[Course, list[str]]:
+def from_seed(seed: int, wishes: Wishes) -> tuple[Circuit, list[str]]:
     """The seed's random circuit on a plane of the wanted size."""
     width, height = wishes.size or DEFAULT_SIZE
     lane = LANE if wishes.width is None else lane_width(wishes.width)
@@ -67,7 +67,7 @@ def from_seed(seed: int, wishes: Wishes) -> tuple[Course, list[str]]:
     x, y = _start(line) if wishes.start is None else line.pose(line.nearest(*wishes.start))[:2]
     check_start(wishes, (x, y), lane)
     line = line.moved(-x, -y)
-    course = Course(
+    course = Circuit(
         name=wishes.name,
         source=f"seed {seed}",
         line=line,

@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 import cv2
 import numpy as np
 
-from racecar_description.track.course import Course
+from racecar_description.track.circuit import Circuit
 from racecar_description.track.painted_plane import model_texts
 from racecar_description.track.painting import paint_course, texture_scale
 from racecar_description.track.preview import draw_preview
@@ -115,7 +115,7 @@ def preview_path(name: str) -> PurePosixPath:
     return PurePosixPath("tracks") / f"{name}.png"
 
 
-def write_course(course: Course, folder: Path) -> None:
+def write_course(course: Circuit, folder: Path) -> None:
     """Write all files into a folder; OSError names one that cannot be written."""
     for relative, data in course_files(course).items():
         path = folder / relative
@@ -123,7 +123,7 @@ def write_course(course: Course, folder: Path) -> None:
         path.write_bytes(data)
 
 
-def course_files(course: Course) -> dict[PurePosixPath, bytes]:
+def course_files(course: Circuit) -> dict[PurePosixPath, bytes]:
     """All files; the same course gives the same bytes."""
     name, plane, model = course.name, course.plane, model_folder(course.name)
     polygons = trace_walls(course) if course.walls else []
@@ -152,7 +152,7 @@ def course_files(course: Course) -> dict[PurePosixPath, bytes]:
     return {path: text.encode() for path, text in texts.items()} | pictures
 
 
-def _world_text(course: Course, boxes: list[Box], words: dict[str, str]) -> str:
+def _world_text(course: Circuit, boxes: list[Box], words: dict[str, str]) -> str:
     x, y, heading = course.start
     start = f"x {x:.3f} m, y {y:.3f} m, yaw {heading:.4f} rad"
     walls = WALLS.format(boxes="".join(map(_box_text, range(len(boxes)), boxes))) if boxes else ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from racecar_description.track.course import EDGE_LINE, VERGE, Course
+from racecar_description.track.circuit import EDGE_LINE, VERGE, Circuit
 
 MOST_PX, MOST_PX_PER_M = 4096, 256  # of the texture's longer side; px per metre
 FINE = 2  # drawn larger, then shrunk, for smooth edges
@@ -18,13 +18,13 @@ LAWNS = ((62, 104, 58), (70, 114, 64))
 ASPHALT, YELLOW, WHITE, BLACK = (52, 53, 56), (250, 205, 20), (235, 235, 235), (20, 20, 20)
 
 
-def texture_scale(course: Course) -> float:
+def texture_scale(course: Circuit) -> float:
     """px per metre."""
     longest = max(course.plane.width, course.plane.height)
     return min(float(MOST_PX_PER_M), MOST_PX / longest)
 
 
-def paint_course(course: Course, px_per_m: float) -> np.ndarray:
+def paint_course(course: Circuit, px_per_m: float) -> np.ndarray:
     """The plane's texture, RGB uint8: up is the world's +y, right is its +x."""
     canvas = _Canvas(course, px_per_m)
     points = course.line.points()
@@ -39,7 +39,7 @@ def paint_course(course: Course, px_per_m: float) -> np.ndarray:
     return canvas.image
 
 
-def _start_squares(course: Course) -> tuple[list[np.ndarray], list[np.ndarray]]:
+def _start_squares(course: Circuit) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Corners (4, 2) of the start line's white and black squares, between the edge lines."""
     x, y, heading = course.start
     forward = np.array((np.cos(heading), np.sin(heading)))
@@ -61,7 +61,7 @@ def _start_squares(course: Course) -> tuple[list[np.ndarray], list[np.ndarray]]:
 class _Canvas:
     """The plane's texture while it is being painted."""
 
-    def __init__(self, course: Course, px_per_m: float):
+    def __init__(self, course: Circuit, px_per_m: float):
         plane = course.plane
         self._low = np.array((plane.x - plane.width / 2, plane.y + plane.height / 2))
         self._px_per_m = px_per_m

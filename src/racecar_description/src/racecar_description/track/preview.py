@@ -7,7 +7,7 @@ import math
 import cv2
 import numpy as np
 
-from racecar_description.track.course import TURNING_CIRCLE, Course, road_width
+from racecar_description.track.circuit import TURNING_CIRCLE, Circuit, road_width
 from racecar_description.track.walls import THICKNESS
 
 WIDTH_PX, BORDER_PX, HEAD_PX = 1200, 50, 60
@@ -16,7 +16,7 @@ WALL, CAR, TIGHT = (200, 190, 185), (60, 60, 240), (60, 60, 255)
 FONT = cv2.FONT_HERSHEY_DUPLEX
 
 
-def draw_preview(course: Course, texture: np.ndarray, polygons: list[np.ndarray]) -> np.ndarray:
+def draw_preview(course: Circuit, texture: np.ndarray, polygons: list[np.ndarray]) -> np.ndarray:
     """BGR: the painted plane with its walls, the car at the start, and rulers of the drawing."""
     width_px = WIDTH_PX - 2 * BORDER_PX
     px_per_m = width_px / course.plane.width
@@ -42,7 +42,7 @@ def draw_preview(course: Course, texture: np.ndarray, polygons: list[np.ndarray]
 class _View:
     """Maps world points to the page."""
 
-    def __init__(self, course: Course, px_per_m: float):
+    def __init__(self, course: Circuit, px_per_m: float):
         self.px_per_m = px_per_m
         plane = course.plane
         self.low = np.array((plane.x - plane.width / 2, plane.y - plane.height / 2))
@@ -58,7 +58,7 @@ class _View:
         cv2.polylines(page, [self.px(points)], True, colour, thick_px, cv2.LINE_AA)
 
 
-def _draw_tight_bends(page: np.ndarray, course: Course, view: _View) -> None:
+def _draw_tight_bends(page: np.ndarray, course: Circuit, view: _View) -> None:
     """Red dots along bends that the car's steering cannot follow."""
     for piece in course.line.pieces:
         if abs(piece.curvature) * TURNING_CIRCLE > 1:
@@ -66,7 +66,7 @@ def _draw_tight_bends(page: np.ndarray, course: Course, view: _View) -> None:
             cv2.circle(page, view.px((x, y))[0].tolist(), 7, TIGHT, -1, cv2.LINE_AA)
 
 
-def _draw_car(page: np.ndarray, course: Course, view: _View) -> None:
+def _draw_car(page: np.ndarray, course: Circuit, view: _View) -> None:
     """An arrow head at the start, in driving direction."""
     x, y, heading = course.start
     shape = np.array([(0.45, 0.0), (0.0, 0.17), (0.1, 0.0), (0.0, -0.17)])
@@ -77,7 +77,7 @@ def _draw_car(page: np.ndarray, course: Course, view: _View) -> None:
     cv2.polylines(page, [corners], True, INK, 1, cv2.LINE_AA)
 
 
-def _draw_rulers(page: np.ndarray, course: Course, view: _View) -> None:
+def _draw_rulers(page: np.ndarray, course: Circuit, view: _View) -> None:
     """Rulers in metres of the drawing's frame, as for --start, at the bottom and on the left."""
     bottom, left = page.shape[0] - BORDER_PX, BORDER_PX
     for axis in (0, 1):

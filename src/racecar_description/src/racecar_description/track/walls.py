@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from racecar_description.track.course import Course
+from racecar_description.track.circuit import Circuit
 
 GAP = 0.1  # m, between the asphalt and a wall
 THICKNESS, HEIGHT = 0.08, 0.25  # m
@@ -38,7 +38,7 @@ class GridMap:
     y: float
 
 
-def trace_walls(course: Course) -> list[np.ndarray]:
+def trace_walls(course: Circuit) -> list[np.ndarray]:
     """Closed polygons (n, 2), the centre lines of the walls."""
     raster = _Raster(course)
     inside = raster.band(course.half_road + GAP + THICKNESS / 2)
@@ -63,7 +63,7 @@ def wall_boxes(polygons: list[np.ndarray]) -> list[Box]:
     return boxes
 
 
-def grid_map(course: Course, polygons: list[np.ndarray]) -> GridMap:
+def grid_map(course: Circuit, polygons: list[np.ndarray]) -> GridMap:
     """Free where the car can be, occupied where walls are, unknown beyond."""
     raster = _Raster(course)
     inside = raster.band(course.half_road + (GAP if polygons else 0.0))
@@ -90,7 +90,7 @@ def grid_map(course: Course, polygons: list[np.ndarray]) -> GridMap:
 class _Raster:
     """A raster image of the road's surroundings, CELL m per pixel; up is the world's +y."""
 
-    def __init__(self, course: Course):
+    def __init__(self, course: Circuit):
         self._points = course.line.points()
         margin = course.half_road + GAP + THICKNESS + 0.1
         low = np.floor((self._points.min(axis=0) - margin) / MAP_CELL) * MAP_CELL

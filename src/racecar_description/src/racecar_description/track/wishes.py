@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from racecar_description.track.centre_line import CentreLine
+from racecar_description.track.circuit import LEAST_WIDTH, Plane, lane_width, road_width
 from racecar_description.track.clearance import touching_place, widest_road
-from racecar_description.track.course import LEAST_WIDTH, Plane, lane_width, road_width
 from racecar_description.track.errors import TrackError
 
 DEFAULT_SIZE = (12.0, 8.0)  # m

@@ -20,7 +20,7 @@ TIMEOUT = 15.0  # s until the guard has started and opened a topic, on a busy ma
 GUARD = "_drive"  # appended to this node's name for that of the guard
 
 
-class Drive:
+class Teleop:
     """The guard's process, started with the first topic driven; all methods run in the loop."""
 
     def __init__(self, node: Node) -> None:
@@ -158,7 +158,7 @@ async def drive_open(context: Context, topic: str = "cmd_vel") -> dict[str, str]
     found = await context.run_in_thread(driven_topics)
     if name not in found:
         raise Refused(f"no robot listens to {name}; there is {', '.join(found) or 'none yet'}")
-    await context.node.shared(Drive).open(name, found[name])
+    await context.node.shared(Teleop).open(name, found[name])
     return {"topic": name, "type": found[name]}
 
 
@@ -168,7 +168,7 @@ async def drive(context: Context, linear: float, angular: float, topic: str = "c
     released, and then it must not drive. Refused: too fast, no such topic, another drives."""
     if max(abs(linear), abs(angular)) > FASTEST:
         raise Refused(f"drive: {linear:g} m/s and {angular:g} rad/s are more than {FASTEST:g}")
-    driven, name = context.node.shared(Drive), _legal(topic)
+    driven, name = context.node.shared(Teleop), _legal(topic)
     if driven.is_open(name):
         await driven.press(context, name, linear, angular)
     else:
@@ -178,7 +178,7 @@ async def drive(context: Context, linear: float, angular: float, topic: str = "c
 @operation("drive_release", control=True)
 async def drive_release(context: Context) -> None:
     """All keys are up."""
-    context.node.shared(Drive).release(context.client)
+    context.node.shared(Teleop).release(context.client)
 
 
 def _legal(topic: str) -> str:

@@ -15,7 +15,7 @@ from bullet_sim.pose import Pose
 from bullet_sim.sensors.laser import Laser
 from bullet_sim.sensors.odometry import true_odometry
 from bullet_sim.world import World
-from sim_bench.course import Course, drive_of, laser_of
+from sim_bench.course import CourseWorld, drive_of, laser_of
 from sim_bench.figures import Figure, figure
 from sim_bench.settings import Settings
 
@@ -30,7 +30,7 @@ SPACING = 1.0  # m
 def measure(settings: Settings) -> list[Figure]:
     """Wall milliseconds of a simulated second, and what stepping the engine takes of it."""
     settings.say(f"{ROBOTS} robots")
-    course = Course()
+    course = CourseWorld()
     robots = [_Robot(course.world, course.spawn_waffle(f"waffle{i}", Pose((x, y, 0.0))))
               for i, (x, y) in enumerate([(0.0, 0.0), *grid(ROBOTS - 1)])]
     _second(course.world, robots)  # until all are up to speed

@@ -23,7 +23,7 @@ import numpy as np
 from bullet_sim.physics.engine import STDOUT
 from bullet_sim.world import World
 from run_session.failure import RunError
-from sim_bench.course import Course, drive_of
+from sim_bench.course import CourseWorld, drive_of
 from sim_bench.drawing_process import OURS, PLUGIN, TINY
 from sim_bench.figures import Figure, figure, ratio
 from sim_bench.pybullet_drawing import PybulletDrawing
@@ -116,7 +116,7 @@ def _our_step(size: tuple[int, int], timestep: float | None) -> Callable[[], obj
 
 def _their_step(kind: str, size: tuple[int, int]) -> Callable[[], object]:
     os.dup2(os.open(os.devnull, os.O_WRONLY), STDOUT)  # the plugin prints while it draws
-    course = Course()
+    course = CourseWorld()
     described = course.world.description
     course.world.close()
     course.world = World(

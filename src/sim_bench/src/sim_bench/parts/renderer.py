@@ -13,7 +13,7 @@ import numpy as np
 
 from run_session.failure import RunError
 from sim_bench import analytic
-from sim_bench.course import Course
+from sim_bench.course import CourseWorld
 from sim_bench.drawing_process import OURS, PLUGIN, TINY, DrawingProcess, Task
 from sim_bench.figures import Figure, figure, percentile, ratio
 from sim_bench.settings import Settings
@@ -71,7 +71,7 @@ def _frame_times(
 
 def _differences(ours: DrawingProcess, settings: Settings) -> list[Figure]:
     """Away from edges, at some places of a lap: greatest and 99.9th percentile of grey levels."""
-    course = Course()
+    course = CourseWorld()
     waffle = course.spawn_waffle()
     worst, high, share = [], [], []
     for place in range(1 if settings.quick else COMPARED_PLACES):

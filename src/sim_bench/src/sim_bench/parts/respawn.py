@@ -15,7 +15,7 @@ from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from run_session import simulator
 from run_session.processes import memory
-from sim_bench.course import Course, drive_of
+from sim_bench.course import CourseWorld, drive_of
 from sim_bench.figures import Figure, figure, ratio
 from sim_bench.parts.memory import SIMULATOR, growth_percent
 from sim_bench.ros_run import START_LIMIT, ros_run
@@ -61,7 +61,7 @@ def _memory(settings: Settings, times: int) -> list[Figure]:
 
 def _step_time(settings: Settings, times: int) -> list[Figure]:
     settings.say(f"{times} more, beside one that drives")
-    course = Course()
+    course = CourseWorld()
     drive = drive_of(course.spawn_waffle())
     drive.command(SPEED, YAW_RATE)
     seconds = []

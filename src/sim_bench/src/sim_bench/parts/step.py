@@ -18,7 +18,7 @@ from functools import partial
 from bullet_sim.model import Model
 from bullet_sim.physics.engine import pybullet
 from run_session.failure import RunError
-from sim_bench.course import Course, drive_of
+from sim_bench.course import CourseWorld, drive_of
 from sim_bench.figures import Figure, figure, ratio
 from sim_bench.settings import Settings
 
@@ -62,15 +62,15 @@ def check_same_work(state: str, median: float) -> None:
         )
 
 
-def _open() -> tuple[Course, Model, Callable[[], None]]:
+def _open() -> tuple[CourseWorld, Model, Callable[[], None]]:
     """The course, its waffle, and the bare step of the same client."""
     before = _clients()
-    course = Course()
+    course = CourseWorld()
     (client,) = _clients() - before
     return course, course.spawn_waffle(), partial(pybullet.stepSimulation, physicsClientId=client)
 
 
-def _drive_a_circle(course: Course, waffle: Model) -> None:
+def _drive_a_circle(course: CourseWorld, waffle: Model) -> None:
     drive = drive_of(waffle)
     drive.command(SPEED, YAW_RATE)
     for _ in range(60):  # until its speed is reached
@@ -79,7 +79,7 @@ def _drive_a_circle(course: Course, waffle: Model) -> None:
 
 
 def _compare(
-    state: str, course: Course, waffle: Model, bare: Callable[[], None], settings: Settings
+    state: str, course: CourseWorld, waffle: Model, bare: Callable[[], None], settings: Settings
 ) -> list[Figure]:
     kinds = {"bare": bare, "ours": course.world.step}
     times: dict[str, list[float]] = {kind: [] for kind in kinds}

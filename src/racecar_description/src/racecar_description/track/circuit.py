@@ -31,7 +31,7 @@ class Plane:
 
 
 @dataclass(frozen=True)
-class Course:
+class Circuit:
     """Everything that a course's files are made from; `origin`: the world's, in the drawing."""
 
     name: str
