@@ -122,3 +122,18 @@ def test_setup_writes_the_line_that_sources_into_bashrc(tmp_path: Path) -> None:
     assert (code, lines) == (0, ["alias l=ls", line]) and "has this line already" in out
     (tmp_path / ".bashrc").write_text("alias l=ls")  # without a line end
     assert typed()[2] == ["alias l=ls", line]
+
+
+@pytest.mark.parametrize("what", ["a folder", "a folder without a name"])
+def test_a_bashrc_that_cannot_be_written_is_one_line(tmp_path: Path, what: str) -> None:
+    home = tmp_path
+    if what == "a folder":
+        (home / ".bashrc").mkdir()
+    else:
+        home = tmp_path / "gone"
+    done = subprocess.run(
+        ["bash", "-c", ". scripts/common.sh; . scripts/setup/workspace.sh; source_in_bashrc"],
+        cwd=ROOT, env=os.environ | {"HOME": str(home), "LC_ALL": "C"}, text=True,
+        capture_output=True, check=False)
+    line, = (done.stdout + done.stderr).splitlines()
+    assert done.returncode and f"{home}/.bashrc cannot be written: type in each new" in line

@@ -62,7 +62,9 @@ bashrc_line() { printf '%s' "source $root/devel/setup.bash  $bashrc_mark"; }
 source_in_bashrc() {
   local file=${HOME:-}/.bashrc
   if grep -qsxF "$(bashrc_line)" "$file"; then say $"$file has this line already: source $root/devel/setup.bash"; return; fi
-  [ ! -e "$file" ] || sed -i --follow-symlinks "/$bashrc_mark\$/d" "$file"
-  { [ ! -s "$file" ] || [ -z "$(tail -c 1 "$file")" ] || echo; bashrc_line; echo; } >>"$file" || fail $"$file cannot be written: type in each new terminal: source $root/devel/setup.bash"
+  if [ -e "$file" ] && { [ ! -w "$file" ] || ! sed -i --follow-symlinks "/$bashrc_mark\$/d" "$file" 2>/dev/null; }; then
+    fail $"$file cannot be written: type in each new terminal: source $root/devel/setup.bash"
+  fi
+  { [ ! -s "$file" ] || [ -z "$(tail -c 1 "$file")" ] || echo; bashrc_line; echo; } 2>/dev/null >>"$file" || fail $"$file cannot be written: type in each new terminal: source $root/devel/setup.bash"
   say $"Written into $file: source $root/devel/setup.bash. It holds for each new terminal."
 }

@@ -1,5 +1,8 @@
 """What becomes of a workspace's packages, and what `make deps` and catkin_make say of it."""
 
+import time
+from pathlib import Path
+
 import pytest
 from workspace_needs.build_commands import catkin_make_isolated_words, catkin_make_words
 from workspace_needs.places import hook
@@ -8,7 +11,7 @@ from workspace_needs.verdicts import judge
 from workspace_needs.workspace import OUR_ADDRESS, WorkspaceError, source_folder
 from workspaces import add_package, turtlebot3_style
 
-from workspace_needs import command
+from workspace_needs import command, configuring
 from workspace_needs import verdicts as verdicts_module
 
 
@@ -129,9 +132,24 @@ def test_what_is_configured_later_stops_a_package(tmp_path, bare):
         add_package(source, name, "", "tool")
     add_package(source, "tool")
     assert of(source, "arm").stops["tool"].endswith("add <depend>tool</depend> there")
-    assert of(source, "wheel").builds  # by luck of its name
+    wheel = of(source, "wheel")
+    assert wheel.builds  # by luck of its name, which is said
+    assert wheel.lacks["tool"].endswith("add <depend>tool</depend> there")
     add_package(source, "arm_2", "tool", "tool")
-    assert of(source, "arm_2").builds
+    assert of(source, "arm_2").builds and not of(source, "arm_2").lacks
+
+
+def test_what_cmake_started_ends_with_it_at_the_limit(tmp_path, bare, monkeypatch):
+    monkeypatch.setattr(configuring, "LIMIT", 3.0)
+    pid = tmp_path / "pid"
+    (add_package(tmp_path / "src", "slow") / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.0.2)\nproject(slow NONE)\n"
+        f"execute_process(COMMAND sh -c \"echo $$ > {pid}; exec sleep 600\")", encoding="utf-8")
+    assert "no end within 3 s" in str(of(tmp_path / "src", "slow").stops)
+    until = time.monotonic() + 60.0
+    while Path(f"/proc/{pid.read_text().strip()}/cmdline").exists() and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not Path(f"/proc/{pid.read_text().strip()}/cmdline").exists()
 
 
 @pytest.mark.parametrize("kind", ["SHARED", "STATIC"])

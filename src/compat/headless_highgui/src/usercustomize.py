@@ -2,7 +2,7 @@
 
 cv2 gets its windows, Tk a line for want of a screen, some modules get the names that they had
 when a script was written, and rospy's subscribers say so when their simulator has ended.
-Programs of ours print in the language of the locale.
+Programs of ours print in the language of the locale, and end at Ctrl-C without a traceback.
 """
 
 import collections
@@ -100,7 +100,20 @@ def choose_language():
     start()
 
 
+def end_quietly():
+    """Let Ctrl-C while a program of ours imports end it without a traceback, as later on."""
+    try:
+        from terminal_language.wanted import is_ours
+    except ImportError:
+        return
+    if is_ours(sys.orig_argv):
+        shown = sys.excepthook
+        sys.excepthook = (
+            lambda kind, *rest: None if kind is KeyboardInterrupt else shown(kind, *rest))
+
+
 choose_language()
+end_quietly()
 sys.meta_path.insert(0, Watch)
 watch_standard()
 if __name__ == "usercustomize":

@@ -92,6 +92,20 @@ def test_a_stream_is_otherwise_what_it_was():
     assert stream.write("no such file") == 12 and stream.isatty() is False
 
 
+def test_ctrl_c_while_a_program_of_ours_imports_is_no_traceback(tmp_path):
+    (tmp_path / "rospy.py").write_text("import os, signal, time\nos.kill(os.getpid(), "
+                                       "signal.SIGINT)\ntime.sleep(60)\n", encoding="utf-8")
+    places = [str(tmp_path), str(START), str(SOURCE)]
+    def typed(*words):
+        return subprocess.run(
+            [sys.executable, *words], text=True, capture_output=True, check=False, timeout=120,
+            env=os.environ | {"PYTHONPATH": os.pathsep.join(places)})
+
+    ours = typed(SOURCE.parents[2] / "learning_topic/scripts/06follower_pid.py")
+    assert (ours.returncode, ours.stderr) == (-2, "")
+    assert "KeyboardInterrupt" in typed("-c", "import rospy").stderr
+
+
 @pytest.mark.parametrize(("more", "said"), [
     ({"LANG": "zh_CN.UTF-8"}, "用法"), ({"LC_ALL": "C.UTF-8", "LANGUAGE": "zh"}, "用法"),
     ({"LANG": "C.UTF-8"}, "usage"),

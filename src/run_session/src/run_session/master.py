@@ -9,12 +9,11 @@ import contextlib
 import fcntl
 import os
 import socket
-import threading
 import time
 import xmlrpc.client
 from collections.abc import Iterable
 from dataclasses import dataclass
-from http.client import HTTPConnection, HTTPException
+from http.client import HTTPException
 from pathlib import Path
 from typing import IO
 from urllib.parse import urlsplit
@@ -24,6 +23,7 @@ import psutil
 import rosgraph
 from rosgraph.network import is_local_address
 
+from bullet_sim_ros.already_running import ImpatientTransport
 from run_session.failure import RunError
 
 ANSWER_TIME = 1.0  # s, wall, for one answer of a node
@@ -71,7 +71,7 @@ def look_up(master_uri: str, caller: str, topics: Iterable[str]) -> Connections:
 def _links_of(master: rosgraph.Master, caller: str, node: str) -> list[tuple[str, str, str]]:
     """A node's outgoing connections, from its getBusInfo (ROS slave API)."""
     try:
-        slave = xmlrpc.client.ServerProxy(master.lookupNode(node), ImpatientTransport())
+        slave = xmlrpc.client.ServerProxy(master.lookupNode(node), ImpatientTransport(ANSWER_TIME))
         _, _, connections = slave.getBusInfo(caller)
         return [
             (node, str(topic), str(receiver))
@@ -81,38 +81,6 @@ def _links_of(master: rosgraph.Master, caller: str, node: str) -> list[tuple[str
     except (OSError, xmlrpc.client.Error, HTTPException, ExpatError, rosgraph.MasterException,
             AttributeError, LookupError, TypeError, ValueError):
         return []  # it hangs, is gone, or its answer is malformed
-
-
-class ImpatientTransport(xmlrpc.client.Transport):
-    """Hangs up after ANSWER_TIME, because a node may hang, or answer without an end."""
-
-    def make_connection(self, host: str) -> HTTPConnection:
-        self._connection = host, _Connection(host, timeout=ANSWER_TIME)
-        return self._connection[1]
-
-    def single_request(self, *request: object, **options: object) -> object:
-        limit = threading.Timer(ANSWER_TIME, lambda: self._connection[1].hang_up())
-        limit.start()
-        try:
-            return super().single_request(*request, **options)
-        finally:
-            limit.cancel()
-
-
-class _Connection(HTTPConnection):
-    """Can be ended while an answer is read, for which HTTPConnection lets its socket go."""
-
-    _connected: socket.socket | None = None
-
-    def connect(self) -> None:
-        super().connect()
-        self._connected = self.sock
-
-    def hang_up(self) -> None:
-        """From another thread: whoever reads then finds the end."""
-        if self._connected is not None:
-            with contextlib.suppress(OSError):  # it has just ended
-                self._connected.shutdown(socket.SHUT_RDWR)
 
 
 TURN_LIMIT = 300.0  # s, wall; as long as a roscore may take
@@ -200,7 +168,7 @@ def free_port(wished: int = USUAL_PORT) -> int:
 def is_up(master_uri: str) -> bool:
     """Whether roscore has set /run_id; if roslaunch starts earlier and sets it, roscore exits."""
     try:
-        master = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport())
+        master = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport(ANSWER_TIME))
         code, _, named = master.hasParam("/course_run", "/run_id")
     except (OSError, xmlrpc.client.Error, HTTPException, ExpatError, TypeError, ValueError):
         return False  # nothing, or another program

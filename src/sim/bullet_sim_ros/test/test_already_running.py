@@ -60,6 +60,16 @@ def test_who_answers_at_the_address(node, expected):
         assert sign(uri) is expected
 
 
+def test_a_machine_whose_name_is_not_known_may_have_it():
+    assert sign("http://no-such-machine.invalid:4711/") is Sign.UNKNOWN
+
+
+def test_a_master_that_hangs_ends_the_question(monkeypatch):
+    monkeypatch.setattr(already_running, "ANSWER_TIME", 0.2)
+    with socket.create_server(("127.0.0.1", 0)) as silent, pytest.raises(TimeoutError):
+        sign_of_life(f"http://127.0.0.1:{silent.getsockname()[1]}/", NAME)
+
+
 def test_a_port_that_has_another_program_by_now():
     class Greeting(StreamRequestHandler):
         def handle(self):

@@ -1,5 +1,6 @@
 """Who sends and who hears: which faults are named, when, and which graphs are none."""
 
+import time
 from http.client import IncompleteRead
 from types import SimpleNamespace
 
@@ -55,6 +56,21 @@ def test_two_that_send_at_once_are_two_drivers(monkeypatch):
     now += RECENT + 0.1  # the teleop is silent now: one took over from the other
     note(senders, "/follower_12")
     assert not lines(contested(senders.recent(now), types))
+
+
+def test_who_is_silent_is_forgotten():
+    senders = Senders()
+    for number in range(1000):
+        note(senders, f"/follower_{number}", f"/topic_{number % 10}")
+    assert not senders.recent(time.monotonic() + RECENT + 0.1) and not senders._last
+
+
+@pytest.mark.parametrize(("node", "named"), [
+    ("/rviz_17_2899", False), ("/tb3_0/rviz", False), ("/rqt_gui_py_node_711", False),
+    ("/record_1712", False), ("/record_images", True), ("/rvizual", True), ("/rosouter", True)])
+def test_only_what_shows_images_itself_is_left_out(node, named):
+    seen = graph({CAMERA: [ME]}, {"/camera/image_raw": [node]})
+    assert bool(lines(unseen(seen, ME))) is named
 
 
 def test_a_command_that_nobody_hears_names_the_robots_topic():

@@ -8,11 +8,13 @@ of files, include lines, Debian's packages or the sourced workspaces change.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping
@@ -124,6 +126,7 @@ class _Run:
         self._packages = packages
         self._graph = {name: graph[name] for name in packages}
         self._words = words
+        self._processes: set[subprocess.Popen] = set()
 
     def all(self) -> dict[str, Configured]:
         """By name, in as many processes at once as there are processors."""
@@ -133,12 +136,18 @@ class _Run:
         running: dict[Future, str] = {}
         with (tempfile.TemporaryDirectory(prefix="configured-") as place,
               ThreadPoolExecutor(os.cpu_count() or 1) as pool):
-            while sorter.is_active():
-                running |= {pool.submit(self._one, name, Path(place)): name
-                            for name in sorter.get_ready()}
-                for future in wait(running, return_when=FIRST_COMPLETED).done:
-                    found[running[future]] = future.result()
-                    sorter.done(running.pop(future))
+            try:
+                while sorter.is_active():
+                    running |= {pool.submit(self._one, name, Path(place)): name
+                                for name in sorter.get_ready()}
+                    for future in wait(running, return_when=FIRST_COMPLETED).done:
+                        found[running[future]] = future.result()
+                        sorter.done(running.pop(future))
+            except KeyboardInterrupt:  # which their sessions do not get
+                pool.shutdown(wait=False, cancel_futures=True)
+                for process in tuple(self._processes):
+                    _kill(process)
+                raise
         return found
 
     def _one(self, name: str, place: Path) -> Configured:
@@ -177,13 +186,25 @@ class _Run:
         command = ["cmake", str(self._packages[name].folder.resolve()), "-Wno-dev", *hook(),
                    *self._words, f"-DCATKIN_DEVEL_PREFIX={place / 'devel' / name}",
                    f"-DCMAKE_PREFIX_PATH={';'.join(filter(None, prefixes))}", *more]
-        try:
-            done = subprocess.run(command, cwd=build, stdin=subprocess.DEVNULL, text=True,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                  errors="replace", timeout=LIMIT, check=False)
-        except subprocess.TimeoutExpired:
-            return 1, f"CMake Error at CMakeLists.txt:1 (project):\n  no end within {LIMIT:.0f} s\n"
-        return done.returncode, done.stdout
+        with subprocess.Popen(command, cwd=build, stdin=subprocess.DEVNULL, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              errors="replace", start_new_session=True) as process:
+            self._processes.add(process)
+            try:
+                said, _ = process.communicate(timeout=LIMIT)
+            except subprocess.TimeoutExpired:
+                _kill(process)
+                return 1, ("CMake Error at CMakeLists.txt:1 (project):\n"
+                           f"  no end within {LIMIT:.0f} s\n")
+            finally:
+                self._processes.remove(process)
+        return process.returncode, said
+
+
+def _kill(process: subprocess.Popen) -> None:
+    """The process and all that it started, such as compilers and downloads."""
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
 
 
 def _targets(build: Path, folder: Path) -> list[dict]:

@@ -113,6 +113,10 @@ class _Judgement:
                 verdict.stops[name] = ("it is configured later, because package.xml does not name "
                                        f"it; add <depend>{name}</depend> there")
                 continue
+            if name in self._names:
+                verdict.lacks[name] = (
+                    "package.xml does not name it: catkin_make comes to it earlier only by its "
+                    f"name, catkin build may not; add <depend>{name}</depend> there")
             kind = self._answers[name].kind
             if self._missing(verdict, name) or kind == OURS or name == "gazebo":
                 explained = True  # to be installed or built first

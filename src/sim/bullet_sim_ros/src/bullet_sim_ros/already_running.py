@@ -4,11 +4,13 @@ The master has one node for each name: if a second one registers, the master end
 keeps the names of nodes that were killed, so a registered node is asked for a sign of life.
 """
 
+import contextlib
 import errno
 import hashlib
 import http.client
 import socket
 import sys
+import threading
 import time
 import xmlrpc.client
 from collections.abc import Iterator
@@ -17,7 +19,6 @@ from enum import Enum
 from urllib.parse import urlsplit
 from xml.parsers.expat import ExpatError
 
-import rosgraph
 from rosgraph.names import get_ros_namespace, load_mappings, ns_join, resolve_name
 
 ANSWER_TIME = 2.0  # s, wall, for a connection and for an answer
@@ -30,6 +31,7 @@ class Sign(Enum):
 
     GONE = "not registered, or registered by a process that has ended"
     HANGS = "takes a connection, and does not answer"
+    UNKNOWN = "registered by another machine, whose name this one does not know"
     ANSWERS = "runs"
 
 
@@ -51,14 +53,18 @@ def is_online(master_uri: str) -> bool:
 
 def sign_of_life(master_uri: str, name: str) -> Sign:
     """Ask the node of this full name itself; OSError if there is no master."""
-    try:
-        uri = rosgraph.Master(name, master_uri).lookupNode(name)
-    except rosgraph.MasterException:
+    master = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport(ANSWER_TIME))
+    code, _, uri = master.lookupNode(name, name)
+    if code != 1:
         return Sign.GONE
+    try:
+        socket.getaddrinfo(urlsplit(uri).hostname, None)
+    except OSError:
+        return Sign.UNKNOWN
     if not is_online(uri):
         return Sign.GONE
     try:
-        _, _, told = xmlrpc.client.ServerProxy(uri, _ImpatientTransport()).getName(name)
+        _, _, told = xmlrpc.client.ServerProxy(uri, ImpatientTransport(ANSWER_TIME)).getName(name)
     except TimeoutError:
         return Sign.HANGS
     except xmlrpc.client.Fault:  # a node, but not one of rospy
@@ -89,8 +95,48 @@ def registering(master_uri: str, name: str) -> Iterator[None]:
         yield
 
 
-class _ImpatientTransport(xmlrpc.client.Transport):
+class ImpatientTransport(xmlrpc.client.Transport):
+    """Hangs up after so many s, as a node may hang, or answer without an end: TimeoutError."""
+
+    def __init__(self, seconds: float) -> None:
+        super().__init__()
+        self._seconds = seconds
+
     def make_connection(self, host: str) -> http.client.HTTPConnection:
-        connection = super().make_connection(host)
-        connection.timeout = ANSWER_TIME
-        return connection
+        self._connection = host, _Connection(host, timeout=self._seconds)
+        return self._connection[1]
+
+    def single_request(self, *request: object, **options: object) -> object:
+        """One call and its answer; TimeoutError if that takes longer."""
+        over = threading.Event()
+        limit = threading.Timer(self._seconds, lambda: (over.set(), self._hang_up()))
+        limit.start()
+        try:
+            return super().single_request(*request, **options)
+        except (OSError, http.client.HTTPException, xmlrpc.client.Error, ExpatError):
+            if over.is_set():
+                raise TimeoutError from None
+            raise
+        finally:
+            limit.cancel()
+
+    def _hang_up(self) -> None:
+        connection = self._connection[1]
+        if connection is not None:  # a connection is made, and has not just ended
+            connection.hang_up()
+
+
+class _Connection(http.client.HTTPConnection):
+    """Can be ended while an answer is read, for which HTTPConnection lets its socket go."""
+
+    _connected: socket.socket | None = None
+
+    def connect(self) -> None:
+        super().connect()
+        self._connected = self.sock
+
+    def hang_up(self) -> None:
+        """From another thread: whoever reads then finds the end."""
+        if self._connected is not None:
+            with contextlib.suppress(OSError):  # it has just ended
+                self._connected.shutdown(socket.SHUT_RDWR)

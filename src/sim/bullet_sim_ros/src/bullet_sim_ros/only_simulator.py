@@ -26,6 +26,9 @@ RUNS_ALREADY = ("A simulator runs already on this master (%s). End it with Ctrl-
                 "then type this again.")
 HANGS = ("A simulator is on this master, but does not answer (%s). End it with: killall -9 "
          "gzserver, then type this again.")
+UNKNOWN = ("A simulator is registered on this master (%s), by a machine whose name this one "
+           "does not know. If it has ended, type: rosnode cleanup, then type this again.")
+SAYINGS = {Sign.ANSWERS: RUNS_ALREADY, Sign.HANGS: HANGS, Sign.UNKNOWN: UNKNOWN}
 AGES = ((3600, "world %s, started %d h ago"), (60, "world %s, started %d min ago"),
         (1, "world %s, started %d s ago"))
 
@@ -38,7 +41,7 @@ def refusal(master_uri: str, name: str) -> tuple[str, ...]:
     sign = sign_of_life(master_uri, name)
     if sign is Sign.GONE:
         return ()
-    return RUNS_ALREADY if sign is Sign.ANSWERS else HANGS, _what_runs(master_uri, name)
+    return SAYINGS[sign], _what_runs(master_uri, name)
 
 
 def register(world: str) -> bool:

@@ -5,6 +5,7 @@ publishes. Each is one warning once it has lasted for PATIENCE, in wall time.
 """
 
 import logging
+import re
 import threading
 import time
 from collections.abc import Hashable, Iterator
@@ -28,7 +29,8 @@ COMMANDS = {"geometry_msgs/Twist", "geometry_msgs/Wrench", "std_msgs/Float64",
             "std_msgs/Float64MultiArray", "trajectory_msgs/JointTrajectory"}
 SENSORS = {"sensor_msgs/Image", "sensor_msgs/CompressedImage", "sensor_msgs/LaserScan",
            "sensor_msgs/PointCloud2", "sensor_msgs/Imu"}
-SAID_ELSEWHERE = ("/rviz", "/rqt", "/sim_viewer", "/record", "/rosout")  # they show what is missing
+# These show what is missing; an anonymous node has numbers behind its name.
+SAID_ELSEWHERE = re.compile(r".*/(rviz|rqt_\w+|sim_viewer|record|rosout)(_\d+)*")
 ALIKE = 0.8  # of two names that may mean the same
 MOST = 5  # names in a line
 
@@ -67,9 +69,9 @@ class Senders:
     def recent(self, now: float) -> dict[str, list[str]]:
         """Nodes by topic that sent within RECENT before `now` (time.monotonic)."""
         with self._lock:
-            return {topic: sorted(caller for caller, last in callers.items()
-                                  if now - last <= RECENT)
-                    for topic, callers in self._last.items()}
+            self._last = {topic: recent for topic, callers in self._last.items() if (recent := {
+                caller: last for caller, last in callers.items() if now - last <= RECENT})}
+            return {topic: sorted(callers) for topic, callers in self._last.items()}
 
 
 def contested(senders: dict[str, list[str]], types: dict[str, str]) -> Iterator[Fault]:
@@ -103,7 +105,7 @@ def unseen(graph: Graph, me: str) -> Iterator[Fault]:
     for topic, everybody in graph.subscribers.items():
         kind = graph.types.get(topic)
         nodes = [node for node in everybody
-                 if node != me and not node.startswith(SAID_ELSEWHERE)]
+                 if node != me and not SAID_ELSEWHERE.fullmatch(node)]
         if kind not in SENSORS or not nodes or graph.publishers.get(topic):
             continue
         meant = [other for other, by in graph.publishers.items()
