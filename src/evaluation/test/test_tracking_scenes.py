@@ -20,8 +20,8 @@ from ai_robot_tracking.scenes.scene import (
     STATIC,
     Scene,
     draw_scene,
+    draw_start,
 )
-from ai_robot_tracking.scenes.start import draw_start
 from ai_robot_tracking.scenes.world_file import TARGET, world_name, world_text
 from ai_robot_tracking.settings import load_settings
 from kinematic_tracker import follow

@@ -9,8 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 import yaml
-from ai_robot_tracking.scenes.scene import draw_scene
-from ai_robot_tracking.scenes.start import draw_start
+from ai_robot_tracking.scenes.scene import draw_scene, draw_start
 from ai_robot_tracking.scenes.world_file import world_text
 
 from bullet_sim.description import WorldDescription

@@ -18,9 +18,10 @@ from ai_robot_tracking.scenes.scene import (
     MOVING,
     SHADE_RADIUS,
     Scene,
+    Start,
     draw_scene,
+    draw_start,
 )
-from ai_robot_tracking.scenes.start import Start, draw_start
 from ai_robot_tracking.scenes.world_file import RADIUS, world_text
 
 from evaluation.command_line import LARGEST_SEED, Parser, number, one_of

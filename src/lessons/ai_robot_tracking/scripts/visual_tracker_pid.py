@@ -7,8 +7,7 @@
 import cv2
 import rospy
 from ai_robot_tracking.follower import Follower, FollowerSettings
-from ai_robot_tracking.parameters import read_settings
-from ai_robot_tracking.reconfigure import offer_settings
+from ai_robot_tracking.parameters import offer_settings, read_settings
 from ai_robot_tracking.tracker_node import TrackerNode
 
 
