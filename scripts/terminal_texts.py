@@ -26,8 +26,8 @@ LANGUAGE = "zh_CN"
 # Programs for those who work on this repository, which print English.
 INSTRUMENTS = re.compile(
     r"src/sim_bench/|src/compat/terminal_language/|src/trial_worlds/"
-    r"|src/.*/(training|world_maker|course_maker|making|test)/"
-    r"|src/.*/(setup|conftest|(make|draw|train)_\w+)\.py|src/sim/bullet_sim/(scripts|examples)/"
+    r"|src/.*/(training|making|test)/"
+    r"|src/.*/(setup|conftest|(make|draw|train)_\w+)\.py|src/sim/bullet_sim/examples/"
     r"|src/driving_courses/examples/|src/evaluation/src/evaluation/(autorace|avoid|\w+_trials)\.py")
 # Parts of the page's server, whose texts only the page shows.
 PAGE = re.compile(

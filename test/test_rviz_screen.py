@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "tools" / "lesson_pictures"))
-from rviz_screen import HEIGHT_PX, WIDTH_PX, Screen, _read_xwd
+sys.path.insert(0, str(Path(__file__).parent.parent / "tools" / "makers"))
+from rviz_pictures import HEIGHT_PX, WIDTH_PX, Screen, _read_xwd
 
 
 def test_a_picture_of_two_rows():

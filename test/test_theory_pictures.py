@@ -1,4 +1,4 @@
-"""The theory's pictures are what draw_theory.py of tools/lesson_pictures draws today."""
+"""The theory's pictures are what tools/makers/theory_pictures.py draws today."""
 
 import importlib.util
 import re
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-SCRIPT = ROOT / "tools/lesson_pictures/draw_theory.py"
+SCRIPT = ROOT / "tools/makers/theory_pictures.py"
 PAGES = {"learning_topic": "learning_topic/THEORY", "lane_keeping": "lessons/lane_keeping/README",
          "ai_robot_tracking": "lessons/ai_robot_tracking/README"}
 LEAST_ALIKE = 2.0  # of 255, in the mean: another release of FreeType or Mesa rounds otherwise
@@ -17,7 +17,7 @@ LEAST_ALIKE = 2.0  # of 255, in the mean: another release of FreeType or Mesa ro
 
 @pytest.fixture(scope="module")
 def theory():
-    spec = importlib.util.spec_from_file_location("draw_theory", SCRIPT)
+    spec = importlib.util.spec_from_file_location("theory_pictures", SCRIPT)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

@@ -13,7 +13,6 @@ from racecar_description.track.course_model import (
     WHITE,
     YELLOW,
     encode_png,
-    write_model,
 )
 from racecar_description.track.track_file import load_track_file
 
@@ -37,17 +36,6 @@ def colour_at(texture: np.ndarray, x: float, y: float) -> tuple[int, ...]:
     px_per_m = texture.shape[0] / 4.0
     row, column = (2.0 - plane_y) * px_per_m, (plane_x + 2.0) * px_per_m
     return tuple(int(value) for value in texture[int(row), int(column)])
-
-
-def test_model_regenerates_byte_for_byte(tmp_path):
-    """The lesson's, and the copy where the tutorial has it."""
-    written = write_model(load_track_file(TRACK), tmp_path)
-    assert len(written) == 4
-    copy = Path(PACKAGES.get_path("turtlebot3_gazebo"), *COMMITTED.parts[-3:])
-    for path in written:
-        for folder in (COMMITTED, copy):
-            committed = folder / path.relative_to(tmp_path)
-            assert path.read_bytes() == committed.read_bytes(), f"run make_course.py: {committed}"
 
 
 def test_lines_have_their_colours_all_along(texture):

@@ -1,8 +1,8 @@
 """The car as data: links, joints, transmissions, sensors, gains, meshes."""
 
-import importlib.util
 import math
 import subprocess
+import sys
 from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
@@ -17,6 +17,9 @@ from bullet_sim.formats.xacro.files import expand
 from bullet_sim.sensors.laser import Laser
 
 PACKAGE = Path(__file__).resolve().parent.parent
+sys.path.append(str(PACKAGE.parents[1] / "tools/makers"))
+import racecar_meshes  # noqa: E402
+
 URDF = PACKAGE / "urdf" / "racecar.urdf.xacro"
 WHEELS = {"velocity": "JointVelocityController", "position": "JointPositionController"}
 CONTROLLERS = {  # name: type, joint, p, d
@@ -32,15 +35,6 @@ CONTROLLERS = {  # name: type, joint, p, d
 @pytest.fixture(scope="module")
 def robot():
     return ElementTree.fromstring(expand(URDF))
-
-
-@pytest.fixture(scope="module")
-def generator():
-    script = PACKAGE / "scripts" / "make_meshes.py"  # another package has one of that name
-    spec = importlib.util.spec_from_file_location("make_racecar_meshes", script)
-    found = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(found)
-    return found
 
 
 @pytest.fixture(scope="module")
@@ -184,14 +178,9 @@ def test_urdfdom_reads_it(tmp_path):
     subprocess.run(["check_urdf", str(urdf)], check=True, capture_output=True)
 
 
-def test_generator_makes_the_shipped_bytes(generator):
-    shipped = {path.name: path.read_text() for path in (PACKAGE / "meshes").iterdir()}
-    assert generator.all_meshes() == shipped
-
-
-def test_solids_are_closed_and_face_outwards(generator):
+def test_solids_are_closed_and_face_outwards():
     """Each edge belongs to two faces, once in either direction; and the volume is positive."""
-    for parts in (generator.chassis(), generator.wheel()):
+    for parts in (racecar_meshes.chassis(), racecar_meshes.wheel()):
         for solid in parts.values():
             edges = [(a, b) for face in solid for a, b in zip(face, [*face[1:], face[0]])]
             assert sorted(edges) == sorted((b, a) for a, b in edges)
@@ -201,6 +190,6 @@ def test_solids_are_closed_and_face_outwards(generator):
             assert np.einsum("ij,ij->", corners[0], np.cross(corners[1], corners[2])) > 0
 
 
-def test_the_car_is_quick_to_draw(generator):
-    faces = sum(text.count("\nf ") for text in generator.all_meshes().values())
+def test_the_car_is_quick_to_draw():
+    faces = sum(mesh.read_text().count("\nf ") for mesh in (PACKAGE / "meshes").glob("*.obj"))
     assert faces < 1500

@@ -1,6 +1,5 @@
 """The racetrack: its line, its picture, its world, and the launch files that use them."""
 
-import importlib.util
 import math
 import re
 from pathlib import Path
@@ -73,15 +72,6 @@ def test_the_picture_shows_the_line(line):
         x, y = (np.array(line.offset(left).points(0.1)) - MIDDLE).T
         red = picture[(height / 2 - y * 256).astype(int), (width / 2 + x * 256).astype(int), 2]
         assert low <= red.min() and red.max() <= high, what
-
-
-def test_generator_paints_the_shipped_bytes():
-    path = PACKAGE / "scripts" / "make_racetrack.py"
-    spec = importlib.util.spec_from_file_location("make_racetrack", path)
-    generator = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(generator)
-    for place, data in generator.all_textures().items():
-        assert (PACKAGE / "models" / place).read_bytes() == data, place
 
 
 def test_the_world(world, line):

@@ -17,8 +17,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from lane_keeping.world.files import PERSON_RADIUS
-from lane_keeping.world.scenery import Crossings, Zebra
+from lane_keeping.world.scenery import PERSON_RADIUS, Crossings, Zebra
 
 from run_session.failure import RunError
 

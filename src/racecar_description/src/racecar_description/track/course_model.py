@@ -22,7 +22,7 @@ BACKGROUND, WHITE, YELLOW = (10, 10, 10), (255, 255, 255), (255, 255, 0)  # RGB
 
 DESCRIPTION = (
     "A black floor with one closed lane: yellow line on its left, white line on its right.\n"
-    "Written by make_course.py of the package learning_topic."
+    "Made from its track file."
 )
 
 

@@ -10,6 +10,8 @@ import rospkg
 
 from lane_keeping.settings import SettingsError, read_table
 
+PERSON_RADIUS = 0.12  # m, of the collision shape
+
 
 @dataclass(frozen=True)
 class Zebra:
@@ -124,3 +126,11 @@ def _number(path: Path, place: str, value: object, least: float = -math.inf) -> 
         more = "" if least == -math.inf else f", {least:g} or more"
         raise SettingsError(f"{path}: {place}: must be a number{more}, is {value!r}")
     return float(value)
+
+
+def person_begin(zebra: Zebra, crossings: Crossings) -> tuple[float, float, float]:
+    """x, y (m) and yaw (rad) of a waiting person: on the right, looking across the road."""
+    yaw = zebra.heading + math.pi / 2
+    x = zebra.x - crossings.far * math.cos(yaw)
+    y = zebra.y - crossings.far * math.sin(yaw)
+    return x, y, math.remainder(yaw, 2 * math.pi)

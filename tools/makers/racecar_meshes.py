@@ -1,5 +1,4 @@
-#!/usr/bin/env python3
-"""Makes the car's meshes from simple solids, reproducibly: `make_meshes.py [FOLDER]`.
+"""The racecar's meshes, from simple solids.
 
 Wavefront OBJ in m. The chassis is in base_link's frame (x forward, z up, z = 0 is the ground), the
 wheel in its own, with the axle along y. No part may be in the camera's view or the laser's plane.
@@ -7,12 +6,12 @@ wheel in its own, with the axle along y. No part may be in the camera's view or 
 A solid is a list of faces, a face a list of corners (x, y, z), counter-clockwise from outside.
 """
 
-import sys
 from itertools import pairwise
 from math import cos, pi, sin
-from pathlib import Path
 
-MESHES = Path(__file__).resolve().parent.parent / "meshes"
+from solids import mtl_text, obj_text
+
+MESHES = "src/racecar_description/meshes"
 LIBRARY = "racecar.mtl"
 COLOURS = {  # RGB
     "paint": (0.78, 0.05, 0.06), "stripe": (0.95, 0.95, 0.93), "glass": (0.05, 0.07, 0.10),
@@ -141,40 +140,8 @@ def wheel():
     return {"rubber": tyre, "rim": spokes + lathe([(-0.0255, 0.009), (0.0255, 0.009)], 12)}
 
 
-def obj_text(parts):
-    """OBJ text of {material: solid}; corners are rounded to 0.1 micrometres and listed once."""
-    numbers, lines = {}, []
-    for material, solid in parts.items():
-        lines.append(f"usemtl {material}")
-        for face in solid:
-            corners = [tuple(round(value, 7) + 0.0 for value in corner) for corner in face]
-            indices = [numbers.setdefault(corner, len(numbers) + 1) for corner in corners]
-            lines += [f"f {indices[0]} {a} {b}" for a, b in pairwise(indices[1:])]
-    vertices = ["v " + " ".join(f"{value:.7g}" for value in corner) for corner in numbers]
-    return "\n".join([f"mtllib {LIBRARY}", *vertices, *lines]) + "\n"
-
-
-def mtl_text():
-    """The materials' colours."""
-    lines = []
-    for name, rgb in COLOURS.items():
-        colour = " ".join(f"{part:g}" for part in rgb)
-        lines += [f"newmtl {name}", f"Ka {colour}", f"Kd {colour}", "Ks 0.05 0.05 0.05", "Ns 10"]
-    return "\n".join(lines) + "\n"
-
-
-def all_meshes():
-    """The files' texts, by name."""
-    return {LIBRARY: mtl_text(), "chassis.obj": obj_text(chassis()), "wheel.obj": obj_text(wheel())}
-
-
-def main():
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else MESHES
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, text in all_meshes().items():
-        (folder / name).write_text(text, encoding="ascii")
-        print(f"{folder / name}: {len(text)} bytes")
-
-
-if __name__ == "__main__":
-    main()
+def files() -> dict[str, bytes]:
+    """The files' bytes by path in the repository."""
+    texts = {LIBRARY: mtl_text(COLOURS), "chassis.obj": obj_text(chassis(), LIBRARY),
+             "wheel.obj": obj_text(wheel(), LIBRARY)}
+    return {f"{MESHES}/{name}": text.encode("ascii") for name, text in texts.items()}

@@ -1,9 +1,10 @@
-"""Plain solids as triangles, and the two file formats that meshes are written in.
+"""Plain solids as triangles, and the three file formats that meshes are written in.
 
 A solid is an array (n, 3, 3): n triangles, three corners each, counter-clockwise seen from outside.
 """
 
 import struct
+from itertools import pairwise
 
 import numpy as np
 
@@ -100,9 +101,9 @@ def moved(solid, offset):
     return solid + np.asarray(offset, float)
 
 
-def stl_bytes(solids):
-    """Binary STL; corners are rounded to 1e-4 so that every machine writes the same bytes."""
-    solid = np.round(np.concatenate(solids), 4) + 0.0
+def stl_bytes(solids, digits=4):
+    """Binary STL; corners are rounded so that every machine writes the same bytes."""
+    solid = np.round(np.concatenate(solids), digits) + 0.0
     across = np.cross(solid[:, 1] - solid[:, 0], solid[:, 2] - solid[:, 0])
     normals = np.round(across / np.linalg.norm(across, axis=1, keepdims=True), 4) + 0.0
     facets = np.concatenate([normals[:, None], solid], axis=1)
@@ -127,3 +128,27 @@ def collada_bytes(parts):
     numbers = " ".join(f"{value:g}" for value in np.round(solid, 5).ravel() + 0.0)
     return COLLADA.format(numbers=numbers, n_numbers=solid.size, n_corners=3 * len(solid),
                           **filled).encode()
+
+def obj_text(parts: dict[str, list], library: str) -> str:
+    """Wavefront OBJ of {material: faces}, a face a list of corners counter-clockwise from outside.
+
+    Corners are rounded to 0.1 micrometres and listed once; `library` is the file of `mtl_text`.
+    """
+    numbers, lines = {}, []
+    for material, solid in parts.items():
+        lines.append(f"usemtl {material}")
+        for face in solid:
+            corners = [tuple(round(value, 7) + 0.0 for value in corner) for corner in face]
+            indices = [numbers.setdefault(corner, len(numbers) + 1) for corner in corners]
+            lines += [f"f {indices[0]} {a} {b}" for a, b in pairwise(indices[1:])]
+    vertices = ["v " + " ".join(f"{value:.7g}" for value in corner) for corner in numbers]
+    return "\n".join([f"mtllib {library}", *vertices, *lines]) + "\n"
+
+
+def mtl_text(colours: dict[str, tuple[float, float, float]]) -> str:
+    """The materials' colours, RGB from 0 to 1."""
+    lines = []
+    for name, rgb in colours.items():
+        colour = " ".join(f"{part:g}" for part in rgb)
+        lines += [f"newmtl {name}", f"Ka {colour}", f"Kd {colour}", "Ks 0.05 0.05 0.05", "Ns 10"]
+    return "\n".join(lines) + "\n"

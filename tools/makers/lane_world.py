@@ -1,57 +1,53 @@
-"""Writes lane.world and the model of its ground, reproducibly."""
+"""The lane's worlds and the model of its ground."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from pathlib import Path
 
 import cv2
-from racecar_description.track.painted_plane import config_text, material_text
-from racecar_description.track.track_file import TrackFile
-
 from lane_keeping.world.ground import Plane, draw_ground, plane_of
-from lane_keeping.world.scenery import Crossings, Lamp, Scenery, Tree, Zebra
+from lane_keeping.world.scenery import (
+    PERSON_RADIUS,
+    Crossings,
+    Lamp,
+    Scenery,
+    Tree,
+    Zebra,
+    load_crossings,
+    load_scenery,
+    person_begin,
+)
+from racecar_description.track.painted_plane import config_text, material_text
+from racecar_description.track.track_file import load_track_file
 
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "src/lessons/lane_keeping"
 MODEL = "lane_track"
-PERSON_RADIUS, PERSON_HEIGHT = 0.12, 0.9  # m, of the collision shape
+PERSON_HEIGHT = 0.9  # m
 PERSON_RATE = 50.0  # Hz, of a person's odometry
 CLOTHES = ("1 0.35 0", "0.85 0 0.6", "0 0.35 0.9", "0.8 0 0")  # one per person, then repeated
 TROUSERS, SKIN, BARK, LEAVES, METAL = "0.1 0.15 0.6", "0.9 0.7 0.55", "0.35 0.25 0.15", (
     "0.2 0.4 0.15"), "0.45 0.47 0.5"
 
 
-def write_world(track_file: TrackFile, crossings: Crossings, scenery: Scenery, folder: Path,
-                shade: bool = True) -> list[Path]:
-    """Write models/lane_track and two worlds into a folder; returns the files.
-
-    worlds/lane.world has people, worlds/lane_empty.world has none.
-    """
-    plane, texture = plane_of(track_file), draw_ground(
-        track_file, crossings, scenery if shade else None)
-    size = f"{plane.width:g} {plane.height:g}"
-    files = {
+def files() -> dict[str, bytes]:
+    """The files' bytes by path in the repository: the ground, lane.world, and it without people."""
+    crossings, scenery = load_crossings(PACKAGE / "config/crossings.yaml"), load_scenery(
+        PACKAGE / "config/lane_scenery.yaml")
+    track_file = load_track_file(ROOT / "src/evaluation/tracks/lane.yaml")
+    plane, texture = plane_of(track_file), draw_ground(track_file, crossings, scenery)
+    texts = {
         f"models/{MODEL}/model.config": config_text(MODEL, _DESCRIPTION),
-        f"models/{MODEL}/model.sdf": _GROUND.replace("SIZE", size),
+        f"models/{MODEL}/model.sdf": _GROUND.replace("SIZE", f"{plane.width:g} {plane.height:g}"),
         f"models/{MODEL}/materials/scripts/{MODEL}.material": material_text(MODEL),
         "worlds/lane.world": _world(plane, scenery, _people(crossings)),
         "worlds/lane_empty.world": _world(plane, scenery, []),
     }
-    picture = folder / f"models/{MODEL}/materials/textures/{MODEL}.png"
-    for path in (picture, *(folder / name for name in files)):
-        path.parent.mkdir(parents=True, exist_ok=True)
-    for name, text in files.items():
-        (folder / name).write_text(text, encoding="utf-8")
-    cv2.imwrite(str(picture), texture[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9])
-    return [*(folder / name for name in files), picture]
-
-
-def person_begin(zebra: Zebra, crossings: Crossings) -> tuple[float, float, float]:
-    """x, y (m) and yaw (rad) of a waiting person: on the right, looking across the road."""
-    yaw = zebra.heading + math.pi / 2
-    x = zebra.x - crossings.far * math.cos(yaw)
-    y = zebra.y - crossings.far * math.sin(yaw)
-    return x, y, math.remainder(yaw, 2 * math.pi)
+    made = {name: text.encode() for name, text in texts.items()}
+    made[f"models/{MODEL}/materials/textures/{MODEL}.png"] = cv2.imencode(
+        ".png", texture[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 9])[1].tobytes()
+    return {f"{PACKAGE.relative_to(ROOT)}/{name}": data for name, data in made.items()}
 
 
 def _world(plane: Plane, scenery: Scenery, people: list[str]) -> str:
@@ -127,7 +123,7 @@ def _box(x: float, y: float, z: float) -> str:
 
 
 _DESCRIPTION = """Lawn with a road in the shape of 凹, one lane, zebra crossings and shade.
-Written by make_lane.py of the package lane_keeping."""
+Written by tools/makers."""
 
 _GROUND = """<?xml version="1.0"?>
 <sdf version="1.4">
@@ -168,8 +164,8 @@ SHAPES
 </plugin></model>"""
 
 _WORLD = """<?xml version="1.0"?>
-<!-- The lane in the shape of 凹. Written by make_lane.py of the package
-     lane_keeping.  凹 形车道，由 lane_keeping 包的 make_lane.py 生成 -->
+<!-- The lane in the shape of 凹. Written by tools/makers.
+     凹 形车道，由 tools/makers 生成 -->
 <sdf version="1.4">
 <world name="default">
 <scene>

@@ -1,20 +1,16 @@
-#!/usr/bin/env python3
-"""Makes the robots' meshes from plain solids: `make_meshes.py [FOLDER]`, same bytes each time.
+"""The TurtleBot3 robots' meshes, from plain solids.
 
 Names and scales are those that URDF files elsewhere refer to: STL in mm, the R200 in m. Bases are
 in the frame of their URDF visual (x forward, z up, z = 0 is base_link), the laser in base_scan, a
 wheel round the y axis. Nothing may stand before a camera: it would hide the line on the floor.
 """
 
-import argparse
-import sys
 from itertools import pairwise
 from math import cos, radians, sin
-from pathlib import Path
 
 from solids import box, collada_bytes, cylinder, moved, prism, ring, stl_bytes, turned
 
-MESHES = Path(__file__).resolve().parent.parent / "meshes"
+MESHES = "src/compat/turtlebot3_description/meshes"
 PLATE = 4.0  # mm, thickness
 
 
@@ -138,27 +134,10 @@ def r200():
             "glass": ((0.10, 0.14, 0.30), eyes)}
 
 
-def all_meshes():
-    """Path below meshes/ -> bytes of the file."""
+def files() -> dict[str, bytes]:
+    """The files' bytes by path in the repository."""
     stl = {"bases/burger_base.stl": burger(), "bases/waffle_base.stl": waffle(),
            "bases/waffle_pi_base.stl": waffle_pi(), "wheels/left_tire.stl": tire(1),
            "wheels/right_tire.stl": tire(-1), "sensors/lds.stl": lds()}
-    return {**{path: stl_bytes(solids) for path, solids in stl.items()},
-            "sensors/r200.dae": collada_bytes(r200())}
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", nargs="?", type=Path, default=MESHES)
-    folder = parser.parse_args().folder
-    for path, data in all_meshes().items():
-        try:
-            (folder / path).parent.mkdir(parents=True, exist_ok=True)
-            (folder / path).write_bytes(data)
-        except OSError as error:
-            sys.exit(f"make_meshes.py: {folder / path}: {error.strerror}")
-        print(f"{folder / path}: {len(data)} bytes")
-
-
-if __name__ == "__main__":
-    main()
+    return {**{f"{MESHES}/{path}": stl_bytes(solids) for path, solids in stl.items()},
+            f"{MESHES}/sensors/r200.dae": collada_bytes(r200())}

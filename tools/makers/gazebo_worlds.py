@@ -1,8 +1,4 @@
-#!/usr/bin/env python3
-"""Writes data/worlds/rubble.world (a heap of boxes and cylinders), stacks.world and the terrain
-image of heightmap.world.
-
-    python3 src/sim/bullet_sim/scripts/make_worlds.py
+"""Worlds of the simulator: a heap, stacks, and the terrain of heightmap.world.
 
 The heap is the same every time: its generator has a fixed seed.
 """
@@ -15,9 +11,9 @@ from xml.etree.ElementTree import Element, SubElement
 import cv2
 import numpy as np
 
-from bullet_sim.props import DATA, add_model, document
+from bullet_sim.props import add_model, document
 
-WORLDS = DATA / "worlds"
+DATA = "src/sim/bullet_sim/src/bullet_sim/data"
 TERRAIN = "media/materials/textures/heightmap_bowl.png"  # Gazebo has its own image there
 SEED = 1
 PIECES = 60
@@ -77,7 +73,7 @@ def _world(models: Iterable[tuple[str, dict]]) -> str:
         SubElement(SubElement(world, "include"), "uri").text = f"model://{name}"
     for name, table in models:
         add_model(world, name, table)
-    return document(sdf, "make_worlds.py")
+    return document(sdf, "tools/makers")
 
 
 def terrain() -> np.ndarray:
@@ -93,13 +89,9 @@ def _height(x: float, y: float) -> float:
     return (7.5 + waves) * out * out * (3 - 2 * out)
 
 
-def files() -> dict[str, str]:
-    """The files that the script writes: text by name in data/worlds."""
-    return {"rubble.world": rubble(), "stacks.world": stacks()}
-
-
-if __name__ == "__main__":
-    for file_name, text in files().items():
-        (WORLDS / file_name).write_text(text, encoding="utf-8")
-    (DATA / TERRAIN).parent.mkdir(parents=True, exist_ok=True)
-    cv2.imwrite(str(DATA / TERRAIN), terrain(), [cv2.IMWRITE_PNG_COMPRESSION, 9])
+def files() -> dict[str, bytes]:
+    """The files' bytes by path in the repository."""
+    picture = cv2.imencode(".png", terrain(), [cv2.IMWRITE_PNG_COMPRESSION, 9])[1]
+    return {f"{DATA}/worlds/rubble.world": rubble().encode(),
+            f"{DATA}/worlds/stacks.world": stacks().encode(),
+            f"{DATA}/{TERRAIN}": picture.tobytes()}

@@ -1,21 +1,18 @@
-#!/usr/bin/env python3
-"""Paints the racetrack and its start line, reproducibly: `make_racetrack.py [MODELS]`.
+"""The racetrack's road and its start line, painted.
 
 Reads tracks/racetrack.yaml (m, world frame) and writes the textures of models/racetrack and
 models/smartcar_plane. The road's colours only depend on the distance to its centre line.
 """
 
 import math
-import struct
-import sys
-import zlib
 from pathlib import Path
 
 import numpy as np
 import yaml
+from racecar_description.track.course_model import encode_png
 
-PACKAGE = Path(__file__).resolve().parent.parent
-TRACK = PACKAGE / "tracks" / "racetrack.yaml"
+PACKAGE = "src/racecar_description"
+TRACK = Path(__file__).resolve().parents[2] / PACKAGE / "tracks/racetrack.yaml"
 PX_PER_M = 256
 EDGE_LINE = 0.03  # m, width of the road's edge lines
 VERGE = 0.03  # m of asphalt outside them
@@ -110,33 +107,8 @@ def draw_start_line(track):
     return image
 
 
-def encode_png(image):
-    """An RGB image as PNG; encoded here, because the bytes of image libraries differ."""
-    height, width, _ = image.shape
-    above = np.vstack([np.zeros((1, width, 3), np.uint8), image[:-1]])
-    rows = np.full((height, 1 + width * 3), 2, np.uint8)  # filter Up: minus the byte above
-    rows[:, 1:] = (image - above).reshape(height, width * 3)
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    chunks = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 9)), (b"IEND", b""))
-    return b"\x89PNG\r\n\x1a\n" + b"".join(
-        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-        for kind, data in chunks)
-
-
-def all_textures():
-    """The files' bytes, by path below models/."""
+def files() -> dict[str, bytes]:
+    """The files' bytes by path in the repository."""
     track = yaml.safe_load(TRACK.read_text(encoding="utf-8"))
-    return {f"{name}/materials/textures/{name}.png": encode_png(draw(track))
+    return {f"{PACKAGE}/models/{name}/materials/textures/{name}.png": encode_png(draw(track))
             for name, draw in (("racetrack", draw_track), ("smartcar_plane", draw_start_line))}
-
-
-def main():
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else PACKAGE / "models"
-    for place, data in all_textures().items():
-        (folder / place).parent.mkdir(parents=True, exist_ok=True)
-        (folder / place).write_bytes(data)
-        print(f"{folder / place}: {len(data)} bytes")
-
-
-if __name__ == "__main__":
-    main()

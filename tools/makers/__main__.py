@@ -1,0 +1,45 @@
+"""Makes the committed meshes, textures, worlds and models anew: the same input, the same bytes.
+
+    python3 tools/makers                       lists the makers
+    python3 tools/makers NAME... [--out DIR]   writes the files of these (DIR: this repository)
+
+A maker is a module beside this one with a function `files`. The pictures of pages have programs of
+their own here, lesson_pictures.py and theory_pictures.py.
+"""
+
+import argparse
+import importlib
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+MAKERS = ("course", "gazebo_worlds", "lane_world", "racecar_meshes", "racetrack",
+          "turtlebot3_meshes", "urdf_lesson_mesh")
+
+
+def main() -> int:
+    """The exit status: 0, or 1 with one line that says which file cannot be written."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", choices=[[], *MAKERS],
+                        help=", ".join(MAKERS))
+    parser.add_argument("--out", type=Path, metavar="DIR", default=ROOT,
+                        help="write below it (default: this repository)")
+    options = parser.parse_args()
+    for name in options.names or MAKERS:
+        maker = importlib.import_module(name)
+        if not options.names:
+            print(f"{name:18} {maker.__doc__.splitlines()[0]}")
+            continue
+        for path, data in maker.files().items():
+            try:
+                (options.out / path).parent.mkdir(parents=True, exist_ok=True)
+                (options.out / path).write_bytes(data)
+            except OSError as error:
+                print(f"makers: {options.out / path}: {error.strerror}", file=sys.stderr)
+                return 1
+            print(f"{options.out / path}: {len(data)} bytes")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
