@@ -1,10 +1,8 @@
-#!/usr/bin/env python3
 """Several burgers at once: topics, frames and commands keep apart, and vanish with their robot."""
 
 import unittest
 
 import rospy
-import rostest
 from gazebo_msgs.srv import DeleteModel, GetModelState, SpawnModel
 from geometry_msgs.msg import Pose, Twist
 from nav_msgs.msg import Odometry
@@ -91,8 +89,3 @@ class Robots(unittest.TestCase):
         self.assertIn("/r1/odom", topics())
         service("delete_model", DeleteModel)("one")
         wait_until(lambda: not [name for name in topics() if name.startswith("/r1")], "no topics")
-
-
-if __name__ == "__main__":
-    rospy.init_node("robots_contract", disable_rostime=True)
-    rostest.rosrun("bullet_sim_ros", "robots", Robots)

@@ -1,11 +1,9 @@
-#!/usr/bin/env python3
 """The bench under ros_control: the manager's rules, and controllers that do what they are told."""
 
 import subprocess
 import unittest
 
 import rospy
-import rostest
 from control_bench import BEST_EFFORT, LIMIT, STRICT, Manager, Rosout, call, wait_until
 from control_msgs.msg import JointControllerState, PidState
 from controller_manager_msgs.srv import ListControllerTypes, ReloadControllerLibraries
@@ -286,8 +284,3 @@ class RosControl(unittest.TestCase):
         self.rosout.wait_for('"henge" which is not in the gazebo model', "hinge")
         with self.assertRaises(rospy.ROSException):
             rospy.wait_for_service("/bench/controller_manager/list_controllers", 0.5)
-
-
-if __name__ == "__main__":
-    rospy.init_node("ros_control_contract", disable_rostime=True)
-    rostest.rosrun("bullet_sim_ros", "ros_control", RosControl)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """What the services of /gazebo promise, asked over ROS."""
 
 import math
@@ -6,7 +5,6 @@ import unittest
 
 import dynamic_reconfigure.client
 import rospy
-import rostest
 from gazebo_msgs.msg import LinkStates, ModelState, ModelStates
 from gazebo_msgs.srv import (
     DeleteModel,
@@ -289,8 +287,3 @@ class Services(unittest.TestCase):
         before = self.clock
         wait_until(lambda: self.clock > before, "a clock that goes on")
         watcher.unregister()
-
-
-if __name__ == "__main__":
-    rospy.init_node("services_contract", disable_rostime=True)
-    rostest.rosrun("bullet_sim_ros", "services", Services)

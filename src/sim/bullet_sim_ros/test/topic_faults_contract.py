@@ -1,18 +1,14 @@
-#!/usr/bin/env python3
 """What the simulator says of commands and images that do not meet, with other nodes."""
 
 import subprocess
-import sys
 import unittest
 
 import rospy
-import rostest
 from control_bench import Rosout
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import Image, LaserScan
 
 LIMIT = 60.0  # s
-ME = "/topic_faults"
 
 
 class TopicFaults(unittest.TestCase):
@@ -31,12 +27,12 @@ class TopicFaults(unittest.TestCase):
             f"__name:={name}"]))
 
     def test_each_is_said_with_who_and_what_is_meant(self):
-        rosout = Rosout()
+        rosout, me = Rosout(), rospy.get_name()
         wrong = rospy.Publisher("/robot/cmd_vel", Twist, queue_size=1)
         blind = rospy.Subscriber("/camera/image_raw", Image)
-        rosout.wait_for(f"{ME} sends commands on /robot/cmd_vel, but nobody hears them there; "
+        rosout.wait_for(f"{me} sends commands on /robot/cmd_vel, but nobody hears them there; "
                         "the robot listens on /cmd_vel")
-        rosout.wait_for(f"{ME} waits for sensor_msgs/Image on /camera/image_raw, but nobody "
+        rosout.wait_for(f"{me} waits for sensor_msgs/Image on /camera/image_raw, but nobody "
                         "publishes it; the simulator publishes /camera/rgb/image_raw")
         wrong.unregister()
         blind.unregister()
@@ -45,8 +41,3 @@ class TopicFaults(unittest.TestCase):
         rosout.wait_for("/follower and /teleop send commands on /cmd_vel at the same time")
         said = [line for line in rosout.lines if "commands on" in line or "waits for" in line]
         self.assertEqual(len(said), 3, said)
-
-
-if __name__ == "__main__":
-    rospy.init_node("topic_faults")
-    rostest.rosrun("bullet_sim_ros", "topic_faults", TopicFaults, sys.argv)

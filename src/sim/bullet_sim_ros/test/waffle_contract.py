@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """The waffle over ROS: topics, rates, frames, units and motion."""
 
 import math
@@ -6,7 +5,6 @@ import unittest
 
 import numpy as np
 import rospy
-import rostest
 import tf2_ros
 from gazebo_msgs.srv import GetModelState
 from geometry_msgs.msg import Twist
@@ -163,8 +161,3 @@ class Waffle(unittest.TestCase):
 def yaw(state):
     q = state.pose.orientation
     return math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-
-
-if __name__ == "__main__":
-    rospy.init_node("waffle_contract")
-    rostest.rosrun("bullet_sim_ros", "waffle", Waffle)
