@@ -16,8 +16,7 @@ from target import Target
 
 from bullet_sim.description import Heightmap, ImageExtrusion
 from bullet_sim.errors import SimulationError
-from bullet_sim.meshes.extrusion import image_part
-from bullet_sim.meshes.heightmap import heightmap_parts
+from bullet_sim.meshes.generated import heightmap_parts, image_part
 from bullet_sim.meshes.images import PNG, load_image, warn_if_unreadable
 from map_server.errors import MapFileError
 from map_server.image import read_image

@@ -16,9 +16,8 @@ from car_control.settings import load_settings
 
 from bullet_sim.control.controllers.diff_drive_controller import DiffDrive as ControllerDrive
 from bullet_sim.control.controllers.diff_drive_controller import DiffDriveGeometry
-from bullet_sim.control.controllers.mobile_base import BaseOptions
+from bullet_sim.control.controllers.mobile_base import UNBOUNDED, BaseOptions, SpeedLimits
 from bullet_sim.control.controllers.servo import PositionServo, VelocityServo
-from bullet_sim.control.controllers.speed_limiter import UNBOUNDED, SpeedLimits
 from bullet_sim.control.hardware import RobotHardware
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters

@@ -27,7 +27,7 @@ from bullet_sim.errors import FormatError
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.egl import EglRenderer
 from bullet_sim.sensors.camera import Camera
-from bullet_sim.sensors.distortion import Distortion
+from bullet_sim.sensors.image_effects import Distortion
 from bullet_sim.world import World
 
 BLACK = SceneDescription(ambient=(0.0, 0.0, 0.0, 1.0), background=(0.0, 0.0, 0.0, 1.0))

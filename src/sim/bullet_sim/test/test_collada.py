@@ -9,7 +9,7 @@ from lxml import etree
 from bullet_sim.description import Mesh
 from bullet_sim.errors import FormatError
 from bullet_sim.meshes import collada
-from bullet_sim.meshes.collada_references import without_dangling
+from bullet_sim.meshes.collada import without_dangling
 from bullet_sim.meshes.loading import load_mesh
 
 DAE = """<?xml version="1.0"?>

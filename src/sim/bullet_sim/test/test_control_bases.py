@@ -16,9 +16,12 @@ from bullet_sim.control.controllers.four_wheel_steering_controller import (
     measured_twist,
     wheel_commands,
 )
-from bullet_sim.control.controllers.mobile_base import BaseOptions
-from bullet_sim.control.controllers.planar_odometry import PlanarOdometry
-from bullet_sim.control.controllers.speed_limiter import SpeedLimiter, SpeedLimits
+from bullet_sim.control.controllers.mobile_base import (
+    BaseOptions,
+    PlanarOdometry,
+    SpeedLimiter,
+    SpeedLimits,
+)
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.errors import SimulationError
 from bullet_sim.sensors.odometry import WheelOdometry

@@ -6,19 +6,24 @@ import pytest
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.pid import Pid, PidGains
-from bullet_sim.control.trajectory.follower import TrajectoryFollower, Verdict
-from bullet_sim.control.trajectory.joint_commands import PidDrive, PositionDrive
-from bullet_sim.control.trajectory.path import Path, stopping
+from bullet_sim.control.trajectory.follower import (
+    PidDrive,
+    PositionDrive,
+    TrajectoryFollower,
+    Verdict,
+)
+from bullet_sim.control.trajectory.path import Path, Segment, Waypoint, stopping
 from bullet_sim.control.trajectory.request import (
+    GoalTolerances,
     InvalidJoints,
     InvalidTrajectory,
     RequestedPoint,
+    Tolerance,
     TrajectoryRequest,
     check,
+    chosen,
     join,
 )
-from bullet_sim.control.trajectory.segment import Segment, Waypoint
-from bullet_sim.control.trajectory.tolerances import GoalTolerances, Tolerance, chosen
 
 STEP = 0.001  # s
 

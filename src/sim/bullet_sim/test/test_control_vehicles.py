@@ -6,8 +6,7 @@ import pytest
 from rigs import hinge, rig
 
 from bullet_sim.control.controllers.mecanum_drive_controller import MecanumDrive, MecanumGeometry
-from bullet_sim.control.controllers.mobile_base import BaseOptions
-from bullet_sim.control.controllers.speed_limiter import SpeedLimits
+from bullet_sim.control.controllers.mobile_base import BaseOptions, SpeedLimits
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.steer_bot import SteerBotGeometry, SteerBotHardware
 from bullet_sim.description import JointLimits, WorldDescription

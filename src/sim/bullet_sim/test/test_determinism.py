@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from bullet_sim.description import Noise
-from bullet_sim.sensors.image_noise import ImageNoise
+from bullet_sim.sensors.image_effects import ImageNoise
 from bullet_sim.world import World
 
 RUN = Path(__file__).with_name("repeated_run.py")

@@ -4,9 +4,8 @@ import pytest
 
 from bullet_sim.description import Material
 from bullet_sim.errors import FormatError
-from bullet_sim.formats.gazebo_materials import named_materials
 from bullet_sim.formats.loading import load_model
-from bullet_sim.formats.ogre import parse_script, to_material
+from bullet_sim.formats.ogre import named_materials, parse_script, to_material
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf.actor import CLOTHES, SKIN
 from bullet_sim.formats.sdf.generated_shapes import GROUNDS, SOIL

@@ -18,8 +18,8 @@ from bullet_sim.description import (
     Sphere,
 )
 from bullet_sim.errors import FormatError
-from bullet_sim.formats.sdf.noise import read_imu
-from bullet_sim.formats.sdf.scale import scaled
+from bullet_sim.formats.sdf.sensor import read_imu
+from bullet_sim.formats.sdf.shapes import scaled
 from bullet_sim.formats.xacro import bounds, opening
 from bullet_sim.formats.xacro.bounds import TooLarge, limit_memory, noted_eval, run_bounded
 from bullet_sim.formats.xacro.files import expand

@@ -10,8 +10,8 @@ import trimesh
 from bullet_sim.description import Mesh
 from bullet_sim.errors import FormatError
 from bullet_sim.meshes import loading
+from bullet_sim.meshes.detail import cluster
 from bullet_sim.meshes.loading import collision_mesh, load_mesh
-from bullet_sim.meshes.simplify import cluster
 
 
 def extent(parts) -> tuple[list, list]:

@@ -5,9 +5,8 @@ from rigs import body, hinge, part
 
 from bullet_sim.description import ModelDescription, WorldDescription
 from bullet_sim.errors import SimulationError, UnknownName
-from bullet_sim.nested import NestedModel, find_nested_model
+from bullet_sim.nested import NestedModel, find_frame, find_nested_model
 from bullet_sim.pose import Pose, quaternion_from_rpy
-from bullet_sim.scopes import find_frame
 from bullet_sim.twist import STILL, Twist
 from bullet_sim.world import World
 

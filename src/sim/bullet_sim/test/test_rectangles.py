@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from bullet_sim.pose import Pose
-from bullet_sim.rendering.frame import CameraView
-from bullet_sim.rendering.projection import projection_matrix
-from bullet_sim.rendering.rectangles import TILE, is_empty, rectangles_of, tiles
+from bullet_sim.rendering.frame import CameraView, projection_matrix
+from bullet_sim.rendering.visibility import TILE, is_empty, rectangles_of, tiles
 
 VIEW = CameraView(100, 100, math.pi / 2, 1.0, 100.0, Pose())  # 90 degrees both ways
 

@@ -7,8 +7,7 @@ import pytest
 
 from bullet_sim.description import Box, Material, Visual
 from bullet_sim.pose import Pose
-from bullet_sim.rendering.frame import CameraView
-from bullet_sim.rendering.projection import projection_matrix, view_matrix
+from bullet_sim.rendering.frame import CameraView, projection_matrix, view_matrix
 from bullet_sim.rendering.scene import Node, link_shape
 from bullet_sim.rendering.visibility import Outlines
 

@@ -3,8 +3,8 @@
 import pytest
 
 from bullet_sim.description import Box, Material
-from bullet_sim.formats.gazebo_materials import named_materials
 from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.ogre import named_materials
 from bullet_sim.formats.resources import DATA_FOLDER, Resources
 from bullet_sim.rendering.scene import link_shape
 

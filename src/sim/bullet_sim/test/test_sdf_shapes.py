@@ -18,7 +18,7 @@ from bullet_sim.description import (
 )
 from bullet_sim.formats.loading import load_model
 from bullet_sim.formats.resources import Resources
-from bullet_sim.meshes.extrusion import dark_rectangles, trapezoids
+from bullet_sim.meshes.generated import dark_rectangles, trapezoids
 from bullet_sim.meshes.loading import collision_mesh, load_mesh
 from bullet_sim.rendering.scene import link_shape
 from bullet_sim.world import World

@@ -8,8 +8,8 @@ import pytest
 
 from bullet_sim.actors import pose_at
 from bullet_sim.description import Box, Strip, Trajectory
-from bullet_sim.formats.gazebo_materials import named_materials
 from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.ogre import named_materials
 from bullet_sim.formats.resources import DATA_FOLDER, Resources
 from bullet_sim.pose import Pose
 from bullet_sim.world import World

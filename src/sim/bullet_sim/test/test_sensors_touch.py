@@ -18,10 +18,9 @@ from bullet_sim.description import (
 )
 from bullet_sim.errors import FormatError
 from bullet_sim.pose import Pose
-from bullet_sim.sensors.contact import ContactSensor
+from bullet_sim.sensors.contact import ContactSensor, NetForce
 from bullet_sim.sensors.joint_states import sample_joints
-from bullet_sim.sensors.net_force import NetForce
-from bullet_sim.sensors.ray_fan import MOST_RAYS, RayFan, fewer_rays
+from bullet_sim.sensors.laser import MOST_RAYS, RayFan, fewer_rays
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
 

@@ -7,7 +7,7 @@ import pytest
 from bullet_sim.description import Box, Cylinder, Sphere
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.resources import Resources
-from bullet_sim.formats.urdf.visuals import read_robot_visuals
+from bullet_sim.formats.urdf.link import read_robot_visuals
 
 ROBOT = """<robot name="car">
   <material name="blue"><color rgba="0 0 1 0.5"/></material>

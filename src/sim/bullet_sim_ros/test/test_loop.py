@@ -5,8 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from bullet_sim_ros.loop import IDLE, wait
-from bullet_sim_ros.pacer import Pacer
-from bullet_sim_ros.scheduler import Scheduler
+from bullet_sim_ros.scheduler import Pacer, Scheduler
 from bullet_sim_ros.simulation import Simulation
 
 

@@ -8,9 +8,8 @@ import pytest
 from bullet_sim.profiler import Profiler
 from bullet_sim.world import World
 from bullet_sim_ros import real_time_factor as monitor_module
-from bullet_sim_ros.pacer import CATCH_UP, SLACK, Pacer
 from bullet_sim_ros.real_time_factor import RealTimeFactorMonitor
-from bullet_sim_ros.scheduler import Scheduler
+from bullet_sim_ros.scheduler import CATCH_UP, SLACK, Pacer, Scheduler
 
 
 class Clock:

@@ -17,8 +17,7 @@ import numpy as np
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.physics.engine import STDERR, STDOUT, pybullet, quiet
 from bullet_sim.pose import Pose, rotate
-from bullet_sim.rendering.frame import CameraView
-from bullet_sim.rendering.projection import projection_matrix, view_matrix
+from bullet_sim.rendering.frame import CameraView, projection_matrix, view_matrix
 from bullet_sim.rendering.scene import Node, Scene
 from run_session.failure import RunError
 

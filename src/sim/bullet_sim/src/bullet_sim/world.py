@@ -16,6 +16,7 @@ from bullet_sim.errors import NameTaken, SimulationError, UnknownName
 from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim.nan_recovery import lost_models, recover_from_nan
+from bullet_sim.nested import carried_lights, find_link, light_name
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.contacts import Contact, read_contacts
 from bullet_sim.physics.engine import EngineError
@@ -24,7 +25,6 @@ from bullet_sim.physics.rays import RayHits, cast_rays
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.scene import Scene
-from bullet_sim.scopes import carried_lights, find_link, light_name
 from bullet_sim.timed_forces import TimedForces
 
 _log = logging.getLogger(__name__)

@@ -17,7 +17,7 @@ from sensor_msgs.msg import CameraInfo, Imu, JointState, LaserScan
 
 from bullet_sim.description import CameraDescription
 from bullet_sim.pose import Pose, Quaternion, normalised
-from bullet_sim.rendering.projection import STRIP, strips
+from bullet_sim.rendering.frame import STRIP, strips
 from bullet_sim.sensors.joint_states import JointReading
 from bullet_sim.sensors.laser import LaserReading
 from bullet_sim.sensors.odometry import OdometryReading

@@ -29,12 +29,11 @@ from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters, read_node_parameters
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.rospy_patches import keep_every_publisher, send_promptly
-from bullet_sim_ros.scene_topic import SceneTopic
 from bullet_sim_ros.services import offer_services
 from bullet_sim_ros.shutdown import end_before_topics, end_by_signals, shut_down
 from bullet_sim_ros.simulation import Simulation
 from bullet_sim_ros.state_log import StateLog
-from bullet_sim_ros.state_topics import StateTopics
+from bullet_sim_ros.state_topics import SceneTopic, StateTopics
 
 
 def open_network(simulation: Simulation, parameters: NodeParameters) -> None:

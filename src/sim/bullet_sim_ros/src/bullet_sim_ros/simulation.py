@@ -15,14 +15,12 @@ from bullet_sim_ros import convert, names
 from bullet_sim_ros.drawing import DrawingThread
 from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
-from bullet_sim_ros.pacer import Pacer
 from bullet_sim_ros.params import NodeParameters
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.host import PluginHost
+from bullet_sim_ros.plugin_host.context import PluginContext, PluginHost
 from bullet_sim_ros.plugin_host.registry import load_plugins, load_world_plugins
 from bullet_sim_ros.real_time_factor import RealTimeFactorMonitor
 from bullet_sim_ros.rospy_patches import set_time
-from bullet_sim_ros.scheduler import Scheduler
+from bullet_sim_ros.scheduler import Pacer, Scheduler
 
 
 class Simulation:

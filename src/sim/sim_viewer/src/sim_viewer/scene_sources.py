@@ -11,7 +11,7 @@ from std_msgs.msg import String
 
 from bullet_sim.description import LightDescription, SceneDescription
 from bullet_sim.formats.resources import Resources
-from bullet_sim.formats.urdf.visuals import RobotLinks, read_robot_visuals
+from bullet_sim.formats.urdf.link import RobotLinks, read_robot_visuals
 from bullet_sim.pose import IDENTITY
 from bullet_sim.rendering.scene_text import SceneContent, scene_from_text
 from sim_viewer.subscription import Subscription

@@ -13,7 +13,7 @@ from bullet_sim.world import World
 from bullet_sim_ros import loop
 from bullet_sim_ros.interface import APPROXIMATED
 from bullet_sim_ros.params import NodeParameters
-from bullet_sim_ros.plugin_host.logged_parameters import defaults
+from bullet_sim_ros.plugin_host.plugin_tags import defaults
 from bullet_sim_ros.plugin_host.unknown import log as unknown_plugins
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.services.models import with_namespace

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from bullet_sim.description.surfaces import Rgba
+from bullet_sim.description.shapes import Rgba
 from bullet_sim.pose import IDENTITY, Pose, Vector3
 
 

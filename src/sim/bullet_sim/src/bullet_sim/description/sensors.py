@@ -3,8 +3,17 @@
 from dataclasses import dataclass
 from xml.etree.ElementTree import Element
 
-from bullet_sim.description.plugins import PluginDescription
 from bullet_sim.pose import IDENTITY, Pose
+
+
+@dataclass(frozen=True)
+class PluginDescription:
+    """A `<plugin>` element as written; its loader reads the parameters."""
+
+    name: str
+    filename: str
+    element: Element
+
 
 WIDE_ANGLE = "wideanglecamera"  # projects through its `<lens>`
 CAMERA_TYPES = ("camera", WIDE_ANGLE, "multicamera", "depth", "depth_camera", "rgbd_camera")

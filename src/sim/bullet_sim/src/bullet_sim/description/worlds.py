@@ -2,10 +2,9 @@
 
 from dataclasses import dataclass
 
-from bullet_sim.description.links import Visual
-from bullet_sim.description.models import ModelDescription
-from bullet_sim.description.plugins import PluginDescription
+from bullet_sim.description.models import ModelDescription, Visual
 from bullet_sim.description.scenes import LightDescription, SceneDescription
+from bullet_sim.description.sensors import PluginDescription
 from bullet_sim.pose import Vector3
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from bullet_sim.control.controllers.planar_odometry import PlanarOdometry
+from bullet_sim.control.controllers.mobile_base import PlanarOdometry
 from bullet_sim.link import Link
 from bullet_sim.physics.auto_disable import REST_RATE, REST_SPEED
 from bullet_sim.pose import rotate

@@ -1,12 +1,24 @@
 """Parses the part of OGRE's material scripts used by Gazebo models: first pass, first texture."""
 
 import re
+import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from types import MappingProxyType
 
 from bullet_sim.description import Material, Rgba
 from bullet_sim.errors import FormatError
+from bullet_sim.formats.resources import DATA_FOLDER
+
+
+@cache
+def named_materials() -> dict[str, Material]:
+    """All materials by full name."""
+    table = tomllib.loads((DATA_FOLDER / "gazebo_materials.toml").read_text(encoding="utf-8"))
+    return {name: Material(**{key: tuple(value) if isinstance(value, list) else value
+                              for key, value in entry.items()}) for name, entry in table.items()}
+
 
 # An unclosed comment is the rest of the file: otherwise each /* in it would be tried again.
 COMMENT = re.compile(r"//[^\n]*|/\*(?:.*?\*/|.*\Z)", re.DOTALL)

@@ -17,7 +17,7 @@ from xml.etree.ElementTree import Element
 from bullet_sim.description import Collision, Geometry, Visual
 from bullet_sim.errors import FormatError, ResourceNotFound
 from bullet_sim.formats.resources import DATA_FOLDER
-from bullet_sim.formats.sdf.scale import scaled
+from bullet_sim.formats.sdf.shapes import scaled
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import child_text, pose, read_xml_file, vector
 from bullet_sim.pose import IDENTITY, Pose, Vector3, rotate

@@ -15,8 +15,7 @@ from bullet_sim.physics.body_links import BodyLinks
 from bullet_sim.physics.client import BASE, NOWHERE, EngineBody, PhysicsClient
 from bullet_sim.physics.engine import EngineError, pybullet
 from bullet_sim.physics.inertia import sound_inertial
-from bullet_sim.physics.springs import Springs
-from bullet_sim.physics.velocity_decay import VelocityDecay
+from bullet_sim.physics.steady_forces import Springs, VelocityDecay
 from bullet_sim.pose import Pose
 
 MANY_BODIES = 60  # from which on links without collisions are filtered out

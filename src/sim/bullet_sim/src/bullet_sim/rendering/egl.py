@@ -20,7 +20,14 @@ import numpy as np
 
 from bullet_sim.profiler import Profiler
 from bullet_sim.rendering import gl_calls, lights
-from bullet_sim.rendering.frame import LARGEST_PX, CameraView, Frame
+from bullet_sim.rendering.frame import (
+    LARGEST_PX,
+    CameraView,
+    Frame,
+    metres_from_depth,
+    projection_matrix,
+    view_matrix,
+)
 from bullet_sim.rendering.gpu_surfaces import (
     IMAGE_UNIT,
     LIGHTS_BINDING,
@@ -31,17 +38,11 @@ from bullet_sim.rendering.gpu_surfaces import (
     SurfaceStore,
     Triangles,
 )
-from bullet_sim.rendering.projection import (
-    metres_from_depth,
-    projection_matrix,
-    view_matrix,
-)
-from bullet_sim.rendering.rectangles import Scissor, tiles
 from bullet_sim.rendering.scene import Node, SceneState
 from bullet_sim.rendering.shadows import ShadowPass, Shadows
 from bullet_sim.rendering.sky import Sky
 from bullet_sim.rendering.target import Quality, Target, quality_of
-from bullet_sim.rendering.visibility import Outlines, Visibility
+from bullet_sim.rendering.visibility import Outlines, Scissor, Visibility, tiles
 
 # OpenGL has the bottom row first. Drawing upside down puts the top row first and flips the winding.
 _UPSIDE_DOWN = np.diag([1.0, -1.0, 1.0, 1.0])

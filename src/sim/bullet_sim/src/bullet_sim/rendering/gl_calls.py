@@ -3,9 +3,13 @@
 Importing it is an OSError where there is no OpenGL library.
 """
 
+import contextlib
 import ctypes
 import ctypes.util
+import math
+import mmap
 import os
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -37,3 +41,28 @@ def read_depth(into: np.ndarray) -> None:
 def _read(into: np.ndarray, components: int, kind: int) -> None:
     height, width = into.shape[:2]
     _GL.glReadPixels(0, 0, width, height, components, kind, into.ctypes.data)
+
+
+VARIABLE = "MALLOC_MMAP_THRESHOLD_"  # bytes, from which on blocks are not in the heap
+M_MMAP_THRESHOLD = -3  # mallopt's name of the same, in the GNU library's malloc.h
+LARGE = 1 << 20  # bytes
+
+
+def own_array(shape: tuple[int, ...]) -> np.ndarray:
+    """A uint8 array of zeros outside the heap."""
+    return np.frombuffer(mmap.mmap(-1, math.prod(shape)), np.uint8).reshape(shape)
+
+
+@contextlib.contextmanager
+def own_blocks() -> Iterator[None]:
+    """Within it, libraries' allocations of at least `LARGE` are outside the heap."""
+    threshold = os.environ.get(VARIABLE, "")
+    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)  # not every C library has it
+    if mallopt is None or not threshold.isdecimal():
+        yield
+        return
+    mallopt(M_MMAP_THRESHOLD, LARGE)
+    try:
+        yield
+    finally:
+        mallopt(M_MMAP_THRESHOLD, int(threshold))

@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 
 from bullet_sim.rendering import gl_calls
-from bullet_sim.rendering.own_memory import own_array, own_blocks
+from bullet_sim.rendering.gl_calls import own_array, own_blocks
 
 # In GL_RENDERER of software renderers, perhaps behind another driver.
 _SOFTWARE = ("llvm", "softpipe", "swr", "swiftshader", "basic render")

@@ -1,5 +1,9 @@
 """Finds the parts of a scene that may be in the image, and the order in which to draw them."""
 
+from __future__ import annotations
+
+import functools
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -7,6 +11,96 @@ import numpy as np
 
 from bullet_sim.meshes.part import box_corners
 from bullet_sim.rendering.scene import LinkShape, Node
+
+NOWHERE = np.array([[1.0, 1.0], [-1.0, -1.0]])
+TILE = 64  # px
+
+Scissor = tuple[int, int, int, int]  # px: left, first row, width, height
+
+
+def is_empty(rectangles: np.ndarray) -> np.ndarray:
+    """(...) bool of (..., 2, 2)."""
+    return (rectangles[..., 0, :] >= rectangles[..., 1, :]).any(axis=-1)
+
+
+def rectangles_of(corners: np.ndarray, clip_world: np.ndarray) -> np.ndarray:
+    """(n, 2, 2): rectangles of the image with boxes of these corners (n, 8, 3), clipped to it.
+
+    The bits of a corner's index tell on which of opposite sides it is; sixteen corners are the
+    region over which a box sweeps. `clip_world` (4, 4) is world to clip coordinates of the image.
+    """
+    clip = corners @ clip_world[:, :3].T + clip_world[:, 3]
+    ahead = clip[..., 2] + clip[..., 3]  # not below 0: not behind the near plane
+    behind = (ahead < 0).any(axis=1)
+    if not behind.any():
+        return _around(clip)
+    found = np.empty((len(clip), 2, 2))
+    found[~behind] = _around(clip[~behind])
+    found[behind] = _around_ahead(clip[behind], ahead[behind])
+    return found
+
+
+def _around(clip: np.ndarray) -> np.ndarray:
+    """Of boxes whose corners (n, c, 4) are all in front of the near plane."""
+    place = clip[..., :2] / clip[..., 3:]
+    return np.stack([place.min(axis=1).clip(-1.0), place.max(axis=1).clip(max=1.0)], axis=1)
+
+
+def _around_ahead(clip: np.ndarray, ahead: np.ndarray) -> np.ndarray:
+    """Of the parts in front of the near plane, of boxes with corners (n, c, 4); `ahead` (n, c)."""
+    edges = _edges(clip.shape[1])
+    one, other = clip[:, edges[0]], clip[:, edges[1]]
+    cut = (ahead[:, edges[0]] < 0) != (ahead[:, edges[1]] < 0)
+    rise = np.where(cut, ahead[:, edges[0]] - ahead[:, edges[1]], 1.0)
+    share = np.where(cut, ahead[:, edges[0]] / rise, 0.0)
+    points = np.concatenate([clip, one + share[..., None] * (other - one)], axis=1)
+    valid = np.concatenate([ahead >= 0, cut], axis=1)[..., None]
+    place = points[..., :2] / np.where(valid, points[..., 3:], 1.0)
+    low, high = np.where(valid, place, 1.0), np.where(valid, place, -1.0)
+    return np.stack([np.maximum(low.min(axis=1), -1.0), np.minimum(high.max(axis=1), 1.0)], axis=1)
+
+
+def tiles(places: np.ndarray, extent: np.ndarray, width: int,
+          height: int) -> list[tuple[Scissor, bool]]:
+    """The tiles that `extent` (2, 2) of an image touches, as rectangles of whole tiles, and whether
+    one of the places (n, 2, 2) is in each.
+
+    Tiles have the size of llvmpipe's, which it draws one by one.
+    """
+    size = np.array([width, height]) / (2 * TILE)
+    every = np.concatenate([extent[None], places])
+    low = np.floor((every[:, 0] + 1) * size).astype(int).tolist()
+    high = np.ceil((every[:, 1] + 1) * size).astype(int).tolist()
+    (first_column, first_row), (end_column, end_row) = low[0], high[0]
+    rows = [0] * end_row  # bit c of a row: a place is in column c
+    for (left, first), (right, last) in zip(low[1:], high[1:], strict=True):
+        for row in range(first, min(last, end_row)):
+            rows[row] |= (1 << right) - (1 << left)
+    found = []
+    for first, last, columns in _runs(rows[first_row:], first_row):
+        inside = [bool(columns >> column & 1) for column in range(first_column, end_column)]
+        found += [((left * TILE, first * TILE, min(right * TILE, width) - left * TILE,
+                    min(last * TILE, height) - first * TILE), there)
+                  for left, right, there in _runs(inside, first_column)]
+    return found
+
+
+def _runs(values: list[int], start: int) -> list[tuple[int, int, int]]:
+    """Start, end and value of each run of equal values; the first index is `start`."""
+    found = []
+    for value, equal in itertools.groupby(values):
+        end = start + len(list(equal))
+        found.append((start, end, value))
+        start = end
+    return found
+
+
+@functools.cache
+def _edges(corners: int) -> np.ndarray:
+    """(2, n): the corners at the ends of each edge of a box with so many dimensions."""
+    bits = [1 << bit for bit in range(corners.bit_length() - 1)]
+    return np.array([(one, one | bit) for bit in bits for one in range(corners)
+                     if not one & bit]).T
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from bullet_sim.link import Link
 from bullet_sim.rendering.frame import LARGEST_SQUARE_PX, CameraView, drawable_size
 from bullet_sim.rendering.renderer import Renderer
 from bullet_sim.rendering.scene import SceneState
-from bullet_sim.sensors.distortion import Distortion
-from bullet_sim.sensors.image_noise import ImageNoise
+from bullet_sim.sensors.image_effects import Distortion, ImageNoise
 from bullet_sim.sensors.wide_lens import WideLens, mistake_in_lens
 from bullet_sim.world import World
 

@@ -1,19 +1,40 @@
 """Common to the controllers of mobile bases: cmd_vel in, odometry and tf out, parameters."""
 
 import logging
+import math
 from collections.abc import Callable
 
 import rospy
 from geometry_msgs.msg import Twist
 
-from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
-from bullet_sim.control.controllers.speed_limiter import UNBOUNDED, SpeedLimits
+from bullet_sim.control.controllers.mobile_base import (
+    UNBOUNDED,
+    BaseOptions,
+    MobileBase,
+    SpeedLimits,
+)
 from bullet_sim.control.rate import Rate
+from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.registry import Controller
-from bullet_sim_ros.plugin_host.odometry_output import OdometryOutput
+from bullet_sim_ros.plugin_host.drives import OdometryOutput
+
+
+def read_distance(p: ControllerParameters, robot: RobotFacts, name: str, first: str, second: str,
+                  axis: int | None = None) -> float:
+    """A parameter, else the distance of two joints, m; with `axis` (0: x, 1: y) along that axis."""
+    if p.has(name):
+        return p.number(name)
+    one, other = robot.pose(first).position, robot.pose(second).position
+    return math.dist(one, other) if axis is None else abs(one[axis] - other[axis])
+
+
+def read_wheel_radius(p: ControllerParameters, robot: RobotFacts, joint: str) -> float:
+    """The parameter `wheel_radius`, else the radius of the wheel on a joint, m."""
+    return p.number("wheel_radius") if p.has("wheel_radius") else robot.wheel_radius(joint)
+
 
 STARTING = 5.0  # s of simulated time from loading, in which a spawner starts the controller
 

@@ -4,9 +4,9 @@ from bullet_sim.control.steer_bot import SteerBotGeometry, SteerBotHardware
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim.model import Model
 from bullet_sim_ros import names
-from bullet_sim_ros.control.base_geometry import read_distance
 from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.joint_parameters import read_joint_limits
+from bullet_sim_ros.control.mobile_base import read_distance
 
 NAMESPACE = "steer_bot_hardware_gazebo"
 

@@ -6,13 +6,15 @@ from control_msgs.msg import FollowJointTrajectoryGoal, JointTolerance
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from bullet_sim.control.trajectory.follower import TrajectoryFollower
+from bullet_sim.control.trajectory.path import Waypoint
 from bullet_sim.control.trajectory.request import (
+    GoalTolerances,
     InvalidTrajectory,
     RequestedPoint,
+    Tolerance,
     TrajectoryRequest,
+    chosen,
 )
-from bullet_sim.control.trajectory.segment import Waypoint
-from bullet_sim.control.trajectory.tolerances import GoalTolerances, Tolerance, chosen
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_parameters import ControllerParameters
 

@@ -3,9 +3,8 @@
 It corresponds to gazebo_plugins/include/gazebo_plugins/gazebo_ros_utils.h.
 """
 
-from bullet_sim_ros.plugin_host.commands import subscribe_commands
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.odometry_output import open_odometry
+from bullet_sim_ros.plugin_host.drives import open_odometry, subscribe_commands
 from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
 

@@ -11,8 +11,7 @@ from bullet_sim.model import Model
 from bullet_sim.rendering.renderer import NoRenderer
 from bullet_sim_ros.errors import format_error
 from bullet_sim_ros.interface import Row, read_interface, rows_by_name
-from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.host import PluginHost
+from bullet_sim_ros.plugin_host.context import PluginContext, PluginHost
 from bullet_sim_ros.plugin_host.unknown import warn_of_unknown
 
 log = logging.getLogger("bullet_sim.plugins")

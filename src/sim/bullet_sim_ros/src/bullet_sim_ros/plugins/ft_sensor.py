@@ -3,7 +3,7 @@
 import numpy as np
 from geometry_msgs.msg import Vector3, Wrench, WrenchStamped
 
-from bullet_sim.sensors.net_force import NetForce
+from bullet_sim.sensors.contact import NetForce
 from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 
 

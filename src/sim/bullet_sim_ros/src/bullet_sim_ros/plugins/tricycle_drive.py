@@ -9,9 +9,8 @@ from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import WheelOdometry
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host import PluginContext, open_odometry, plugin, subscribe_commands
-from bullet_sim_ros.plugin_host.logged_parameters import LoggedParameters
-from bullet_sim_ros.plugin_host.odometry_output import wheel_transform
-from bullet_sim_ros.plugin_host.odometry_source import OdometrySource
+from bullet_sim_ros.plugin_host.drives import OdometrySource, wheel_transform
+from bullet_sim_ros.plugin_host.plugin_tags import LoggedParameters
 
 
 @plugin("libgazebo_ros_tricycle_drive.so")

@@ -6,8 +6,8 @@ from geometry_msgs.msg import Point, Quaternion
 
 from bullet_sim.description import Inertial
 from bullet_sim.errors import prefixed
+from bullet_sim.nested import INERTIAL_FRAMES
 from bullet_sim.pose import Pose
-from bullet_sim.scopes import INERTIAL_FRAMES
 from bullet_sim.twist import twist_difference
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names

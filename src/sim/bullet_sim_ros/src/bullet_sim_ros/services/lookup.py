@@ -5,7 +5,7 @@ from typing import Any
 from geometry_msgs.msg import Pose as PoseMsg
 from geometry_msgs.msg import Twist as TwistMsg
 
-from bullet_sim import scopes
+from bullet_sim import nested
 from bullet_sim.description import JointDescription
 from bullet_sim.errors import UnknownName
 from bullet_sim.joint import Joint
@@ -57,7 +57,7 @@ def find_link(world: World, name: str, missing: str) -> Link:
 def find_frame(world: World, name: str, missing: str) -> tuple[Pose, Twist]:
     """Pose and twist of a reference frame; ServiceError(`missing`) if there is none."""
     try:
-        return scopes.find_frame(world.models, name)
+        return nested.find_frame(world.models, name)
     except UnknownName:
         raise ServiceError(missing) from None
 

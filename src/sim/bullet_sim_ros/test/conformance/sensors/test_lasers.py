@@ -8,7 +8,7 @@ import rospy
 from sensor_models import ACROSS, eye, look
 from sensor_msgs.msg import LaserScan
 
-from bullet_sim.sensors.ray_fan import fewer_rays
+from bullet_sim.sensors.laser import fewer_rays
 
 LASERS = ("libgazebo_ros_laser.so", "libgazebo_ros_gpu_laser.so")
 OTHERS = ("libgazebo_ros_block_laser.so", "libgazebo_ros_range.so")

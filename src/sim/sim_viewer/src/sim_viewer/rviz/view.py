@@ -8,7 +8,7 @@ import rospy
 
 from bullet_sim.description import SceneDescription, Visual
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats.urdf.visuals import read_robot_visuals
+from bullet_sim.formats.urdf.link import read_robot_visuals
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.rendering.scene_text import SceneContent
 from sim_viewer.images import to_jpeg

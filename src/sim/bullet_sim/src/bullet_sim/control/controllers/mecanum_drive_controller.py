@@ -4,8 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from bullet_sim.control.controllers.commands import TimedCommand
-from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
-from bullet_sim.control.controllers.speed_limiter import UNLIMITED, SpeedLimiter, SpeedLimits
+from bullet_sim.control.controllers.mobile_base import (
+    UNLIMITED,
+    BaseOptions,
+    MobileBase,
+    SpeedLimiter,
+    SpeedLimits,
+)
 from bullet_sim.control.handles import CommandHandle
 from bullet_sim.errors import check_lengths
 

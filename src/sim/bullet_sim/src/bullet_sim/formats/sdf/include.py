@@ -7,8 +7,8 @@ from xml.etree.ElementTree import Element
 from bullet_sim.description import LightDescription, ModelDescription
 from bullet_sim.errors import FormatError, ResourceNotFound, SimulationError
 from bullet_sim.formats.mistakes import mistake, reading
-from bullet_sim.formats.sdf.light import read_light
 from bullet_sim.formats.sdf.link import drop_endless_inertia
+from bullet_sim.formats.sdf.scene import read_light
 from bullet_sim.formats.sdf.sensor import read_plugins
 from bullet_sim.formats.source import NEWEST_SDF, Source, sdf_version
 from bullet_sim.formats.xml_values import child_text, flag, pose, read_xml_file

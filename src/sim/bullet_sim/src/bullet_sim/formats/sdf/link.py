@@ -8,7 +8,7 @@ from bullet_sim.description import Inertial, LinkDescription
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.prop_shapes import read_parts
 from bullet_sim.formats.sdf.frames import Frames, relative_to
-from bullet_sim.formats.sdf.light import read_light
+from bullet_sim.formats.sdf.scene import read_light
 from bullet_sim.formats.sdf.sensor import read_sensor
 from bullet_sim.formats.sdf.shapes import read_collision, read_visual
 from bullet_sim.formats.source import Source

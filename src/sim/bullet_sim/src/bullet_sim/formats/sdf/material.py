@@ -8,8 +8,7 @@ from xml.etree.ElementTree import Element
 from bullet_sim.description import Material
 from bullet_sim.errors import FormatError, ResourceNotFound
 from bullet_sim.files import check_file
-from bullet_sim.formats.gazebo_materials import named_materials
-from bullet_sim.formats.ogre import ScriptMaterial, parse_script, to_material
+from bullet_sim.formats.ogre import ScriptMaterial, named_materials, parse_script, to_material
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.xml_values import child_text, colour, flag, number
 

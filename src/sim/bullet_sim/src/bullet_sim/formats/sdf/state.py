@@ -14,7 +14,7 @@ from bullet_sim.description import (
 )
 from bullet_sim.errors import FormatError
 from bullet_sim.formats.mistakes import instead
-from bullet_sim.formats.sdf.scale import scaled_model
+from bullet_sim.formats.sdf.shapes import scaled_model
 from bullet_sim.pose import IDENTITY, Pose
 
 UNSCALED = (1.0, 1.0, 1.0)

@@ -17,11 +17,9 @@ from bullet_sim.formats.mistakes import all_that_can, or_without
 from bullet_sim.formats.sdf.actor import read_actor
 from bullet_sim.formats.sdf.frames import Frames, relative_to
 from bullet_sim.formats.sdf.include import read_include
-from bullet_sim.formats.sdf.light import read_light
 from bullet_sim.formats.sdf.model import read_model
 from bullet_sim.formats.sdf.population import MOST_MODELS, read_population
-from bullet_sim.formats.sdf.road import read_road
-from bullet_sim.formats.sdf.scene import read_scene
+from bullet_sim.formats.sdf.scene import read_light, read_road, read_scene
 from bullet_sim.formats.sdf.sensor import read_plugins
 from bullet_sim.formats.sdf.state import apply_state
 from bullet_sim.formats.source import Source

@@ -4,9 +4,13 @@ from bullet_sim.control.controllers.ackermann_steering_controller import (
     AckermannGeometry,
     AckermannSteering,
 )
-from bullet_sim_ros.control.base_geometry import read_distance, read_wheel_radius
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.mobile_base import MobileBaseController, read_options
+from bullet_sim_ros.control.mobile_base import (
+    MobileBaseController,
+    read_distance,
+    read_options,
+    read_wheel_radius,
+)
 from bullet_sim_ros.control.registry import controller
 
 

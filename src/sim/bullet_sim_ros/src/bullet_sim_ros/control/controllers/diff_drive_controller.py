@@ -9,9 +9,13 @@ from trajectory_msgs.msg import JointTrajectoryPoint
 
 from bullet_sim.control.controllers.diff_drive_controller import DiffDrive, DiffDriveGeometry
 from bullet_sim_ros import convert
-from bullet_sim_ros.control.base_geometry import read_distance, read_wheel_radius
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.mobile_base import MobileBaseController, read_options
+from bullet_sim_ros.control.mobile_base import (
+    MobileBaseController,
+    read_distance,
+    read_options,
+    read_wheel_radius,
+)
 from bullet_sim_ros.control.registry import controller
 from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.reconfigure_server import Value, offer_values

@@ -18,11 +18,16 @@ from control_msgs.srv import (
 from trajectory_msgs.msg import JointTrajectory
 
 from bullet_sim.control.rate import Rate
-from bullet_sim.control.trajectory.follower import Outcome, TrajectoryFollower, Verdict
-from bullet_sim.control.trajectory.joint_commands import PidDrive, PositionDrive
+from bullet_sim.control.trajectory.follower import (
+    Outcome,
+    PidDrive,
+    PositionDrive,
+    TrajectoryFollower,
+    Verdict,
+)
 from bullet_sim.control.trajectory.request import InvalidJoints, InvalidTrajectory
+from bullet_sim_ros.control.actions import GoalSlot
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.goal_slot import GoalSlot
 from bullet_sim_ros.control.pid import open_pid
 from bullet_sim_ros.control.registry import Controller, controller
 from bullet_sim_ros.control.trajectory_messages import (

@@ -5,9 +5,14 @@ import logging
 from geometry_msgs.msg import Twist
 
 from bullet_sim.control.controllers.mecanum_drive_controller import MecanumDrive, MecanumGeometry
-from bullet_sim_ros.control.base_geometry import read_distance, read_wheel_radius
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.mobile_base import MobileBaseController, read_limits, read_options
+from bullet_sim_ros.control.mobile_base import (
+    MobileBaseController,
+    read_distance,
+    read_limits,
+    read_options,
+    read_wheel_radius,
+)
 from bullet_sim_ros.control.registry import controller
 
 log = logging.getLogger("bullet_sim.control")

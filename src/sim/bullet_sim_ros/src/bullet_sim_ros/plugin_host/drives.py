@@ -1,17 +1,52 @@
-"""The odometry output of drives: a topic and a transform."""
+"""What drives share: commands from a topic; odometry and transforms out, and their source."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from geometry_msgs.msg import TransformStamped
+from geometry_msgs.msg import TransformStamped, Twist
 from nav_msgs.msg import Odometry
 
 from bullet_sim.joint import Joint
 from bullet_sim.model import Model
-from bullet_sim.sensors.odometry import OdometryReading
+from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry, true_odometry
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.logged_parameters import LoggedParameters
-from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
+from bullet_sim_ros.plugin_host.plugin_tags import LoggedParameters, PluginParameters
+
+
+def subscribe_commands(context: PluginContext, namespace: str, topic: str,
+                       command: Callable[[Twist], None], queue_size: int = 1) -> None:
+    """Subscribe, and call `command(message)` in the loop; refuses messages with bad numbers."""
+    def take(message: Twist) -> Callable[[], None] | None:
+        return None if context.refuses("command", message) else lambda: command(message)
+
+    context.subscribe(names.join(namespace, topic), Twist, take, queue_size=queue_size,
+                      tcp_nodelay=True)
+
+
+class OdometrySource:
+    """The true pose (`world`), or the rotation of a left and a right wheel (`encoder`)."""
+
+    def __init__(self, context: PluginContext, p: LoggedParameters, wheels: Sequence[Joint],
+                 encoders: WheelOdometry):
+        self._world, self._model = context.world, context.model
+        self._left, self._right = wheels
+        self._encoders = encoders
+        self._true = p.choice("odometrySource", ("world", "encoder")) == "world"
+        if not self._true:
+            context.each_step(self._count)
+
+    def sample(self) -> OdometryReading:
+        """Pose and twist now."""
+        if self._true:
+            return true_odometry(self._world, self._model)
+        return self._encoders.sample()
+
+    def restart(self) -> None:
+        """Set the encoders to zero."""
+        self._encoders.restart(self._world.time)
+
+    def _count(self) -> None:
+        self._encoders.update(self._world.time, self._left.velocity, self._right.velocity)
 
 
 class OdometryOutput:

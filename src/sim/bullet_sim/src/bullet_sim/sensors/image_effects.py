@@ -1,13 +1,9 @@
-"""Distorts a pinhole image as a real lens does: Brown's model, as in OpenCV and camera_info.
-
-With x, y the pinhole's coordinates over the focal length and r^2 = x^2 + y^2, a point is seen at
-x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), and y likewise with p1, p2 swapped.
-"""
+"""What a camera does to an image: the distortion of its lens, and noise."""
 
 import cv2
 import numpy as np
 
-from bullet_sim.description import CameraDescription
+from bullet_sim.description import CameraDescription, Noise
 
 _ITERATIONS = 40
 _CLOSE_PX = 0.5  # if inverting and applying it ends farther away, the model has no inverse there
@@ -63,3 +59,29 @@ class Distortion:
         source = np.where(found[:, None], np.clip(source, 0, last), _OUTSIDE)
         source = source.reshape(height, width, 2).astype(np.float32)
         return cv2.convertMaps(source, None, cv2.CV_16SC2)
+
+
+_PLACES = 65_521  # offsets of a sheet
+
+
+class ImageNoise:
+    """A sheet of noise drawn once, added to each image at a different offset.
+
+    Drawing six million normal numbers for each 1920x1080 image would take longer than the image
+    itself. Within an image the numbers are as independent as numpy's; two images have different
+    parts of one sheet, shifted relative to each other.
+    """
+
+    def __init__(self, noise: Noise, shape: tuple[int, int, int], random: np.random.Generator):
+        """`noise` relative to full brightness, as in SDF; `shape` is that of the images."""
+        self._shape = shape
+        count = int(np.prod(shape)) + _PLACES
+        values = random.standard_normal(count, dtype=np.float32) * np.float32(noise.stddev * 255)
+        values += np.float32(noise.mean * 255)
+        self._sheet = np.rint(values).astype(np.int16)
+
+    def add(self, rgb: np.ndarray, random: np.random.Generator) -> np.ndarray:
+        """A noisy copy of an (h, w, 3) uint8 image; grey levels stay within 0..255."""
+        place = int(random.integers(_PLACES))
+        sheet = self._sheet[place:place + rgb.size].reshape(self._shape)
+        return cv2.add(rgb, sheet, dtype=cv2.CV_8U)
