@@ -1,10 +1,15 @@
 """What check says of a package's scripts and C++ nodes that will not run."""
 
+import os
 import subprocess
 import time
 
 import pytest
+from workspace_needs.check import parameter_commands
 from workspace_needs.check.sources import program_findings
+from workspace_needs.workspace import _files
+
+from bullet_sim.errors import FormatError
 
 
 @pytest.fixture
@@ -73,3 +78,21 @@ def test_the_time_for_a_source_is_linear(tmp_path):
     began = time.process_time()
     assert list(program_findings(tmp_path)) == []
     assert time.process_time() - began < 5  # a minute without bounds
+
+
+def test_a_pipe_is_not_read(node, tmp_path):
+    os.mkfifo(tmp_path / "scripts" / "pipe", 0o755)
+    os.mkfifo(tmp_path / "scripts" / "pipe.cpp")
+    (tmp_path / "package.xml").write_text("<package/>", encoding="utf-8")
+    assert node(b"#!/bin/sh\n") == []
+    assert list(_files(tmp_path)) == [tmp_path / "package.xml", node.path]
+
+
+def test_xacro_files_are_bounded_in_sum(tmp_path, monkeypatch):
+    monkeypatch.setattr(parameter_commands, "_taken", [])
+    path = tmp_path / "r.xacro"
+    path.write_text("<robot name='r'/>", encoding="utf-8")
+    assert "robot" in parameter_commands.expanded(path, {}, str)
+    monkeypatch.setattr(parameter_commands, "MOST_IN_SUM", sum(parameter_commands._taken))
+    with pytest.raises(FormatError, match=r"r.xacro: it is not expanded: those before it took"):
+        parameter_commands.expanded(path, {}, str)

@@ -139,6 +139,19 @@ def test_what_is_configured_later_stops_a_package(tmp_path, bare):
     assert of(source, "arm_2").builds and not of(source, "arm_2").lacks
 
 
+def test_what_catkin_config_saved_counts(tmp_path, bare):
+    source = tmp_path / "src"
+    add_package(source, "one", cmake="if(NOT WITH_ARM)\nmessage(FATAL_ERROR \"no arm\")\nendif()")
+    assert not of(source, "one").builds
+    profile = tmp_path / ".catkin_tools/profiles/mine"
+    profile.mkdir(parents=True)
+    (profile.parent / "profiles.yaml").write_text("active: mine\n", encoding="utf-8")
+    (profile / "config.yaml").write_text("cmake_args:\n- -DWITH_ARM=ON\n", encoding="utf-8")
+    assert of(source, "one").builds
+    (profile / "config.yaml").write_text("cmake_args: [\n", encoding="utf-8")
+    assert not of(source, "one").builds
+
+
 def test_what_cmake_started_ends_with_it_at_the_limit(tmp_path, bare, monkeypatch):
     monkeypatch.setattr(configuring, "LIMIT", 3.0)
     pid = tmp_path / "pid"

@@ -11,6 +11,7 @@ from xmlrpc.client import ServerProxy
 import rosgraph
 import rospy
 import rostest
+from gazebo_msgs.srv import GetWorldProperties
 
 LIMIT = 60.0  # s
 BLOCK = """<sdf version="1.6"><model name="block"><static>true</static><link name="l">
@@ -18,10 +19,10 @@ BLOCK = """<sdf version="1.6"><model name="block"><static>true</static><link nam
 </sdf>"""
 
 
-def gz(*words):
+def gz(*words, piped=""):
     """Exit code and output, then errors."""
     done = subprocess.run(["gz", *words], capture_output=True, text=True, timeout=LIMIT,
-                          check=False)
+                          check=False, input=piped)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -48,6 +49,23 @@ class GzStory(unittest.TestCase):
     def test_the_world_stands_still_and_goes_on(self):
         for word in ("-p1", "-p0", "-r", "-o"):
             self.assertEqual(gz("world", word), (0, "", ""))
+
+    def test_a_paused_world_takes_single_steps(self):
+        properties = rospy.ServiceProxy("/gazebo/get_world_properties", GetWorldProperties)
+        self.assertEqual(gz("world", "-w", "default", "-p1"), (0, "", ""))
+        before = properties().sim_time
+        self.assertEqual(gz("world", "-s"), (0, "", ""))
+        self.assertEqual(gz("world", "-m", "9"), (0, "", ""))
+        self.assertAlmostEqual(properties().sim_time - before, 0.01, places=6)
+        self.assertEqual(gz("world", "-p0"), (0, "", ""))
+
+    def test_a_model_comes_through_a_pipe(self):
+        self.assertEqual(gz("model", "-s", "-x", "3", piped=BLOCK)[0], 0)
+        said = gz("model", "-w", "default", "-m", "block", "-p")[1]
+        self.assertEqual(round(float(said.split()[0]), 3), 3)
+        self.assertEqual(gz("model", "-m", "block", "-d"), (0, "", ""))
+        self.assertEqual(gz("model", "-s", piped="<sdf version='1.6'/>"), (
+            1, "", "gz model: what is piped has no <model name=>; type: gz model -s -m NAME\n"))
 
     def test_topics_are_those_of_ros(self):
         # conforms: gz/topic

@@ -14,7 +14,7 @@ from catkin_pkg.topological_order import topological_order
 
 from workspace_needs.configuring import Configured, configure
 from workspace_needs.tables import DEBIAN, OURS, Answer, Tables
-from workspace_needs.workspace import Package, read_workspace
+from workspace_needs.workspace import Package, read_workspace, saved_options
 
 INCLUDE_FOLDERS = ("/usr/include", "/usr/local/include")
 
@@ -42,14 +42,15 @@ class Verdict:
 def judge(source: Path, tables: Tables | None = None, words: Iterable[str] = ()) -> list[Verdict]:
     """A verdict for each package below `source` that does not belong to this repository.
 
-    `words`: the -D options with which the workspace is built. WorkspaceError if no build tool can
-    build any.
+    `words`: the -D options with which the workspace is built, behind those that `catkin config`
+    saved. WorkspaceError if no build tool can build any.
     """
     tables = tables or Tables()
     packages = [package for package in read_workspace(source) if not package.is_ours]
     hidden = {package.name: why for package in packages
               if (why := tables.why_ours_stays(package.name))}
-    configured = configure((each for each in packages if each.name not in hidden), words)
+    configured = configure((each for each in packages if each.name not in hidden),
+                           [*saved_options(source), *words])
     judgement = _Judgement(packages, configured, tables, _order(source))
     verdicts = [Verdict(package.name, package.folder, hides_ours=True,
                         stops={"ours is used": hidden[package.name]})

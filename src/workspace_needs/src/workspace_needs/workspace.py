@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import yaml
 from catkin_pkg.package import InvalidPackage, parse_package
 from catkin_pkg.packages import find_package_paths
 
@@ -64,6 +65,20 @@ def source_folder(path: Path) -> Path:
         raise WorkspaceError(f"{path}/src: there is no package in it; clone one into it first")
     raise WorkspaceError(f"{path}: this is not a workspace, it has no src/ with packages; give the "
                          "folder above src/, such as ~/catkin_ws")
+
+
+def saved_options(source: Path) -> list[str]:
+    """What `catkin config --cmake-args` saved for the workspace of this src/; mostly nothing."""
+    profiles = source.parent / ".catkin_tools" / "profiles"
+    try:
+        active = _yaml(profiles / "profiles.yaml").get("active") or "default"
+        return [str(word) for word in _yaml(profiles / active / "config.yaml")["cmake_args"]]
+    except (OSError, KeyError, TypeError, AttributeError, ValueError, yaml.YAMLError):
+        return []  # none saved, or a file that catkin itself will name
+
+
+def _yaml(path: Path) -> dict:
+    return yaml.safe_load(path.read_text("utf-8")) if path.exists() else {}
 
 
 def read_workspace(source: Path) -> list[Package]:
@@ -145,7 +160,8 @@ def _declared(manifest, *kinds: str) -> list[str]:
 def _files(folder: Path) -> Iterator[Path]:
     for place, below, names in os.walk(folder):
         below[:] = sorted(name for name in below if not name.startswith("."))
-        yield from (Path(place) / name for name in sorted(names))
+        # No pipe or device: to read one may take for ever.
+        yield from (path for name in sorted(names) if (path := Path(place) / name).is_file())
 
 
 def _text(path: Path) -> str:

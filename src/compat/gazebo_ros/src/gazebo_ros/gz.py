@@ -25,7 +25,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf.writing import VERSION, sdf_text
-from bullet_sim.formats.xml_values import read_xml_file
+from bullet_sim.formats.xml_text import parse_xml, read_xml_file
 from bullet_sim.pose import quaternion_from_rpy, rpy_from_quaternion
 
 ELSEWHERE = {
@@ -62,12 +62,17 @@ def parser() -> argparse.ArgumentParser:
     model.add_argument("-m", "--model-name", metavar="NAME", help="of one model")
     model.add_argument("-d", "--delete", action="store_true")
     model.add_argument("-f", "--spawn-file", metavar="FILE", help="URDF or SDF")
+    model.add_argument("-s", "--spawn-string", action="store_true", help="SDF from a pipe")
+    model.add_argument("-w", "--world-name", metavar="NAME", help="here is one world alone")
     model.add_argument("-i", "--info", action="store_true", help="its links and joints")
     model.add_argument("-p", "--pose", action="store_true", help="print x y z R P Y")
     for name in PLACE:
         model.add_argument(f"-{name}", f"--pose-{name}", dest=f"to_{name}", type=float, metavar="N")
 
     world = commands.add_parser("world", help="pause or reset")
+    world.add_argument("-w", "--world-name", metavar="NAME", help="here is one world alone")
+    world.add_argument("-s", "--step", action="store_true", help="one step of a paused world")
+    world.add_argument("-m", "--multi-step", type=int, metavar="N", help="N of them")
     world.add_argument("-p", "--pause", type=int, choices=(0, 1), help="1: pause, 0: go on")
     world.add_argument("-r", "--reset-all", action="store_true", help="time and models")
     world.add_argument("-o", "--reset-models", action="store_true")
@@ -109,6 +114,8 @@ def run_model(options: argparse.Namespace) -> None:
     """One action on models, by the simulator's services."""
     if options.list:
         print("\n".join(_call("get_world_properties", GetWorldProperties).model_names))
+    elif options.spawn_string:
+        _spawn_piped(options)
     elif options.spawn_file:
         _spawn(options)
     elif not options.model_name:
@@ -129,8 +136,26 @@ def _spawn(options: argparse.Namespace) -> None:
     kind = "-urdf" if root.tag == "robot" else "-sdf"
     model = root if root.tag == "robot" else root.find("model")
     name = options.model_name or ("" if model is None else model.get("name", "")) or path.stem
+    _become_spawn_model(options, kind, "-file", str(path), "-model", name)
+
+
+def _become_spawn_model(options: argparse.Namespace, *words: str) -> None:
     place = [word for axis, value in _given(options).items() for word in (f"-{axis}", str(value))]
-    _become("rosrun", "gazebo_ros", "spawn_model", kind, "-file", str(path), "-model", name, *place)
+    _become("rosrun", "gazebo_ros", "spawn_model", *words, *place)
+
+
+def _spawn_piped(options: argparse.Namespace) -> None:
+    text, name = sys.stdin.read(), options.model_name
+    if not name:
+        found = parse_xml(text, "stdin").find("model")
+        name = "" if found is None else found.get("name", "")
+    if not name:
+        raise GzError("what is piped has no <model name=>; type: gz model -s -m NAME")
+    copy = os.memfd_create("model")  # for the next program to read once more
+    os.write(copy, text.encode())
+    os.lseek(copy, 0, os.SEEK_SET)
+    os.dup2(copy, sys.stdin.fileno())
+    _become_spawn_model(options, "-sdf", "-stdin", "-model", name)
 
 
 def _move(options: argparse.Namespace) -> None:
@@ -163,6 +188,9 @@ def run_world(options: argparse.Namespace) -> None:
         _call("reset_simulation", Empty)
     elif options.reset_models:
         _call("reset_world", Empty)
+    elif options.step or options.multi_step is not None:
+        for _ in range(1 if options.step else options.multi_step):
+            _call("step_physics", Empty)
     else:
         raise GzError("what is to be done? Type: gz world --help")
 

@@ -1,5 +1,6 @@
 """The output of a `<param>`'s `command`, without running it: xacro and cat are done here."""
 
+import resource
 import shlex
 import tempfile
 from collections.abc import Sequence
@@ -7,7 +8,7 @@ from pathlib import Path
 
 from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.formats.resources import FindPackage
-from bullet_sim.formats.xacro.bounds import run_bounded
+from bullet_sim.formats.xacro.bounds import MOST_SECONDS, run_bounded
 from bullet_sim.formats.xacro.files import expand_file
 from bullet_sim.formats.xml_text import decoded, read_bytes
 from workspace_needs.check.dry_run import listening
@@ -16,6 +17,8 @@ XACRO = ("xacro", "xacro.py")
 LAUNCHERS = (["rosrun", "xacro"], ["python"], ["python2"], ["python3"])
 WITHOUT_EFFECT = frozenset(["--inorder", "-i", "--legacy", "--check-order", "--includes",
                             "--xacro-ns", "-q", "-v"])
+MOST_IN_SUM = 60.0  # s of processor time for all xacro files of one that is checked
+_taken: list[float] = []  # s of it, by files; in a process that checks one file
 OF_ROSLAUNCH = "rosversion"  # in roslaunch's own roscore.xml; it changes nothing
 OF_EMPTY_WORLD = "unless_running"  # prints its arguments
 
@@ -53,8 +56,12 @@ def output_of(command: str, find_package: FindPackage) -> str:
 def expanded(path: Path, mappings: dict[str, str], find_package: FindPackage) -> str:
     """The URDF of a xacro file; time and memory are limited, as expressions may take any amount.
 
-    FormatError if the file cannot be expanded.
+    FormatError if the file cannot be expanded, or those before it took MOST_IN_SUM.
     """
+    left = MOST_IN_SUM - sum(_taken)
+    if left <= 0.0:
+        raise FormatError(f"{path}: it is not expanded: those before it took {MOST_IN_SUM:g} s of "
+                          "processor time")
     with tempfile.TemporaryDirectory(prefix="check-") as folder:
         result = Path(folder) / "result"
 
@@ -67,12 +74,21 @@ def expanded(path: Path, mappings: dict[str, str], find_package: FindPackage) ->
             result.write_text(text, encoding="utf-8")
             return code
 
-        with listening():
-            code = run_bounded(expand_into_file, str(path))
+        before = _time_of_children()
+        try:
+            with listening():
+                code = run_bounded(expand_into_file, str(path), min(MOST_SECONDS, left))
+        finally:
+            _taken.append(_time_of_children() - before)
         output = result.read_text(encoding="utf-8") if result.exists() else "it failed"
     if code:
         raise FormatError(output)
     return output
+
+
+def _time_of_children() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def _without_launcher(words: Sequence[str]) -> Sequence[str]:

@@ -33,6 +33,8 @@ def program_findings(folder: Path) -> Iterator[Finding]:
     for place, below, files in os.walk(folder):
         below[:] = sorted(name for name in below if not name.startswith("."))
         for path in (Path(place, name) for name in sorted(files)):
+            if not path.is_file():  # a pipe, which nobody may write into
+                continue
             if path.suffix in SOURCES:
                 yield from transport_findings(path)
             elif os.access(path, os.X_OK) and not (relayed and path.name in names):
