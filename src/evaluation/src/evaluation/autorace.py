@@ -13,15 +13,13 @@ from pathlib import Path
 import numpy as np
 import rospy
 from gazebo_msgs.msg import ModelStates
-from turtlebot3_gazebo.making.lanes import beside
-from turtlebot3_gazebo.making.race_worlds import BARRIERS, OBSTACLES, WALLS
 
 from evaluation.autorace_judge import (
     BAYS,
     GROUND,
-    HALF_LANE,
     MISSIONS,
-    WAY,
+    PLAN,
+    WORLD,
     Sample,
     Score,
     off_lane,
@@ -33,7 +31,6 @@ from evaluation.report import cell, mean, table
 from evaluation.trial import Case, ReportedTrial
 from run_session import simulator
 from run_session.failure import RunError
-from run_session.files import find_package
 from run_session.launch import Launched
 from run_session.session import Session
 from trial_worlds.light import write_lit_world
@@ -201,9 +198,8 @@ class RaceTrial(ReportedTrial):
         light = round(draw.uniform(0.6, 1.0), 2)
         x, y, yaw = (value + draw.uniform(-wide, wide) for value, wide in
                      zip(task.start, (0.03, 0.03, 0.08), strict=True))
-        folder, package = session.out / "drives", find_package("turtlebot3_gazebo")
-        world = write_lit_world(package / "worlds" / "turtlebot3_autorace_2020.world",
-                                package / "models", light, folder / case.name)
+        folder = session.out / "drives"
+        world = write_lit_world(WORLD, WORLD.parents[1] / "models", light, folder / case.name)
         stack.begin(task.script, [
             f"world_name:={world}", f"x_pos:={x:.4f}", f"y_pos:={y:.4f}", f"yaw:={yaw:.4f}",
             f"seed:={case.seed}"], folder / f"{case.name}.log")
@@ -258,13 +254,14 @@ def write_sheet(drives: Sequence, path: Path) -> None:
     passed = sum(each.passed for each in drives)
     figure, axes = map_sheet("AutoRace 2020", f"{passed} of {len(drives)} drives passed",
                              (-2.1, -2.1), (2.1, 2.1))
-    for side, colour in ((1, LINE), (-1, WHITE)):
-        axes.plot(*np.array(beside(WAY, side * HALF_LANE)).T, color=colour, linewidth=3)
-    for (x, y), yaw, length in WALLS.values():
-        half = np.array((np.cos(yaw), np.sin(yaw))) * length / 2
+    for side, colour in (("left", LINE), ("right", WHITE)):
+        axes.plot(*np.array(PLAN["lane"][side]).T, color=colour, linewidth=3)
+    for wall in PLAN["walls"]:
+        (x, y), yaw = wall["middle"], wall["yaw"]
+        half = np.array((np.cos(yaw), np.sin(yaw))) * wall["length"] / 2
         axes.plot((x - half[0], x + half[0]), (y - half[1], y + half[1]), color=FAINT, linewidth=6)
-    axes.plot(*np.array(list(OBSTACLES.values())).T, "o", color=FAINT, markersize=20)
-    axes.plot(*np.array(BARRIERS).T, "s", color=CAR, markersize=8, label="barriers")
+    axes.plot(*np.array(PLAN["obstacles"]).T, "o", color=FAINT, markersize=20)
+    axes.plot(*np.array(PLAN["barriers"]).T, "s", color=CAR, markersize=8, label="barriers")
     axes.plot(*np.array(list(BAYS.values())).T, "P", color=WHITE, markersize=12, label="bays")
     for number, drive in enumerate(drives):
         points = np.array(drive.path)

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import dropwhile, pairwise
 
 import numpy as np
-from turtlebot3_gazebo.making.courses import WAY_2020
-from turtlebot3_gazebo.making.lanes import rounded
 
-WAY = rounded(WAY_2020, 0.3)  # the lane's middle, m
+from run_session.files import find_package
+
+WORLD = find_package("turtlebot3_gazebo") / "worlds" / "turtlebot3_autorace_2020.world"
+PLAN = json.loads(WORLD.with_suffix(".json").read_text(encoding="utf-8"))  # m, rad
+WAY = PLAN["lane"]["middle"]
 HALF_LANE = 0.125  # m: the base is between the lines
 LIGHT_X, BAR_Y = 1.25, 0.66  # m, of the base: its front is at the light, or before the bar
 LANE_END = 0.8  # m, y just before the bar: the lane mission ends there

@@ -15,6 +15,7 @@ WAY_2020: tuple[Point, ...] = (
     (0.0, -1.747), (1.747, -1.747), (1.747, -0.93), (0.35, -0.93), (0.35, -0.14), (1.62, -0.14),
     (1.62, 1.747), (-0.45, 1.747), (-0.9, 1.25), (-1.72, 1.25), (-1.72, 0.0),
 )
+LANE_2020 = 0.3, 0.25  # m: radius of its bends, width
 COURSE_MODEL = """  <model name="course">
     <static>true</static>
     <link name="course_link">
@@ -65,7 +66,7 @@ def course_2020() -> Canvas:
     """A lane with an intersection, a building site, parking, a crossing; it ends at the tunnel."""
     canvas = Canvas(1024, SIDE, FLOOR_2020)
     painter = Painter(canvas, yaw=-3.14, line_width=0.02)
-    painter.lane(WAY_2020, radius=0.3, width=0.25)
+    painter.lane(WAY_2020, *LANE_2020)
     painter.line([(0.95, -1.86), (0.95, -1.63)], RED, 0.035)  # the start
     short_cut(painter)
     parking(painter)

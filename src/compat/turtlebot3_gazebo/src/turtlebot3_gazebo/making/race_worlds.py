@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import json
+
 from turtlebot3_gazebo.making import sdf
+from turtlebot3_gazebo.making.courses import LANE_2020, WAY_2020
+from turtlebot3_gazebo.making.lanes import beside, rounded
 from turtlebot3_gazebo.making.props import BAR, BAR_HIGH, LAMPS, LIGHT, bar_posts
 from turtlebot3_gazebo.making.sdf import DARK, GREY, Numbers, Part, box, cylinder, sphere
 from turtlebot3_gazebo.making.worlds import include, world
@@ -127,4 +131,18 @@ def race_worlds() -> dict[str, bytes]:
         "turtlebot3_autorace_2020.world": race(
             "turtlebot3_autorace_2020", ("course", -3.14), SIGNS_2020, "tunnel_wall",
             list(OBSTACLES), three, barriers),
+        "turtlebot3_autorace_2020.json": plan_2020(),
     }
+
+
+def plan_2020() -> bytes:
+    """Where lane, walls, obstacles and barriers are, m and rad, for who judges drives in it."""
+    radius, width = LANE_2020
+    middle = rounded(WAY_2020, radius)
+    lines = {"middle": middle, "left": beside(middle, width / 2),
+             "right": beside(middle, -width / 2)}
+    walls = [{"middle": place, "yaw": yaw, "length": length}
+             for place, yaw, length in WALLS.values()]
+    plan = {"lane": lines, "walls": walls, "obstacles": list(OBSTACLES.values()),
+            "barriers": BARRIERS}
+    return (json.dumps(plan) + "\n").encode()
