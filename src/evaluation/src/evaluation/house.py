@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 import rospy
@@ -19,12 +20,23 @@ from evaluation.trajectory_error import at_moments
 from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.poses import compose, wrap_angle
 from run_session import simulator
-from run_session.files import Length, find_package, load_record, located
+from run_session.files import find_package, located
 from run_session.observer import ServicePoller
+from run_session.records import Length, Must, are, is_number, load_record
 from run_session.session import StatusLine
 from run_session.simulator import place_of, pose_message, yaw_of
 from trial_worlds.feelers import Feelers, Gap
 from trial_worlds.house import Ground
+
+
+def _is_anywhere(value: object) -> bool:
+    return is_number(value, -np.inf)
+
+
+Pose = Annotated[tuple[float, float, float], Must(
+    "[x, y, yaw]", lambda value: are(value, _is_anywhere, 3))]
+Points = Annotated[tuple[tuple[float, float], ...], Must("a list of [x, y]", lambda value: bool(
+    value) and are(value, lambda point: are(point, _is_anywhere, 2)))]
 
 
 @dataclass(frozen=True)
@@ -33,14 +45,14 @@ class House:
 
     world: str  # path, or package://PACKAGE/PATH
     model: str  # TurtleBot3 model
-    start: tuple[float, float, float]
+    start: Pose
     laser_height: Length
     laser_reach: Length  # beyond it walls are not mapped
     passable: Length  # least distance from a wall to the robot's reference point
     max_speed: Length  # m/s
     goal_clearance: Length  # least distance from a wall to a random goal
     goal_distance: Length  # least distance from one random goal to the next
-    way_points: tuple[tuple[float, float], ...]  # of the mapping drive
+    way_points: Points  # of the mapping drive
 
     @property
     def world_path(self) -> Path:

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import rospkg
-import yaml
 
 from exercises.errors import CannotCheck
+from run_session.records import check_keys, read_yaml
 
 FILE = "exercises.yaml"
 KEYS = ("title", "start", "solution", "check", "limits")
@@ -70,10 +70,7 @@ def find_exercises(packages: dict[str, Path] | None = None) -> dict[str, Exercis
 
 def read_exercises(file: Path) -> dict[str, Exercise]:
     """Exercises of one file, by name; CannotCheck names file and key of an error."""
-    try:
-        table = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
-        raise CannotCheck(f"{file}: {' '.join(str(error).split())[:200]}") from error
+    table = read_yaml(file, CannotCheck)
     if not isinstance(table, dict):
         raise CannotCheck(f"{file}: must be a table of exercises, NAME: {{{', '.join(KEYS)}}}")
     return {name: _exercise(file, str(name), entry) for name, entry in table.items()}
@@ -81,7 +78,7 @@ def read_exercises(file: Path) -> dict[str, Exercise]:
 
 def _exercise(file: Path, name: str, entry: Any) -> Exercise:
     place = f"{file}: {name}"
-    _check_keys(place, entry, KEYS)
+    check_keys(place, entry, KEYS, CannotCheck)
     for key in ("title", "start", "solution", "check"):
         if not isinstance(entry[key], str):
             raise CannotCheck(f"{place}: {key}: must be a text, is"
@@ -94,20 +91,12 @@ def _exercise(file: Path, name: str, entry: Any) -> Exercise:
         raise CannotCheck(f"{place}: check: no check {entry['check']!r:.80}; there are:"
                           f" {', '.join(CHECKS)}")
     limits = entry["limits"]
-    _check_keys(f"{place}: limits", limits, CHECKS[entry["check"]])
+    check_keys(f"{place}: limits", limits, CHECKS[entry["check"]], CannotCheck)
     for key, value in limits.items():
         if type(value) not in (int, float) or not math.isfinite(value):
             raise CannotCheck(f"{place}: limits: {key}: must be a number, is"
                               f" {reprlib.repr(value)[:80]}")
     return Exercise(file, name, entry["title"], start, solution, entry["check"], limits)
-
-
-def _check_keys(place: str, table: Any, expected: tuple[str, ...]) -> None:
-    given = table if isinstance(table, dict) else {}
-    for key in [*given, *expected]:
-        if key not in expected or key not in given:
-            which = "missing" if key in expected else "unknown"
-            raise CannotCheck(f"{place}: {which} key {key!r:.80}; there are: {', '.join(expected)}")
 
 
 @functools.cache

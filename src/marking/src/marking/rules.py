@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import math
-from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, get_type_hints
 
 from run_session.failure import RunError
-from run_session.files import read_keys
+from run_session.records import read_yaml, to_record
 
 
 @dataclass(frozen=True)
@@ -69,9 +66,7 @@ class Rules:
 
 def load_rules(path: Path) -> Rules:
     """Read a marking.yaml; RunError names file and key."""
-    values = read_keys(path, [field.name for field in fields(Rules)])
-    rules = Rules(**{key: _value(path, key, kind, values[key])
-                     for key, kind in get_type_hints(Rules).items()})
+    rules = to_record(Rules, read_yaml(path), path)
     small = [key for key, value in dataclasses.asdict(rules.limits).items() if value <= 0]
     for wrong, what in (
             (len(rules.light) != 2 or not 0 < rules.light[0] <= rules.light[-1],
@@ -87,45 +82,3 @@ def load_rules(path: Path) -> Rules:
             raise RunError(f"{path}: {what}")
     tracks = tuple(str((path.parent / track).resolve()) for track in rules.tracks)
     return dataclasses.replace(rules, tracks=tracks)
-
-
-def _value(path: Path, key: str, kind: Any, value: Any) -> Any:
-    if dataclasses.is_dataclass(kind):
-        names = [field.name for field in fields(kind)]
-        given = set(value) if isinstance(value, dict) else set()
-        for what, keys in (("unknown", given - set(names)), ("missing", set(names) - given)):
-            if keys:
-                raise RunError(f"{path}: {what} key {f'{key}.{min(keys, key=str)}'!r}; "
-                               f"there are: {', '.join(names)}")
-        return kind(**{name: _value(path, f"{key}.{name}", float, value[name])
-                       for name in names})
-    wanted, fits = _KINDS[kind]
-    if not fits(value):
-        raise RunError(f"{path}: {key}: must be {wanted}, is {value!r}")
-    return tuple(value) if isinstance(value, list) else kind(value)
-
-
-def _is_number(value: Any) -> bool:
-    return type(value) in (int, float) and 0 <= value < math.inf
-
-
-def _list_of(fits: Callable[[Any], bool]) -> Callable[[Any], bool]:
-    return lambda value: isinstance(value, list) and all(map(fits, value))
-
-
-def _is_text(value: Any) -> bool:
-    return isinstance(value, str)
-
-
-def _is_whole(value: Any) -> bool:
-    return type(value) is int and 0 <= value < 10**8
-
-
-_KINDS = {
-    str: ("a text", _is_text),
-    int: ("a whole number, 0 or more", _is_whole),
-    float: ("a number, 0 or more", _is_number),
-    tuple[str, ...]: ("a list of texts", _list_of(_is_text)),
-    tuple[int, ...]: ("a list of whole numbers", _list_of(_is_whole)),
-    tuple[float, ...]: ("a list of numbers", _list_of(_is_number)),
-}

@@ -7,15 +7,21 @@ import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
-from run_session.files import find_package, load_record, located
+from run_session.files import find_package, located
+from run_session.records import Must, are, is_text, load_record
+
+Topics = Annotated[tuple[str, ...], Must("a list of topics", lambda value: are(value, is_text))]
+LaunchFile = Annotated[
+    tuple[str, str], Must("[package, file]", lambda value: are(value, is_text, 2))]
 
 
 @dataclass(frozen=True)
 class CourseFile:
     """A course file, key by key."""
 
-    launch: tuple[str, str]  # package and launch file, which has an argument `follower`
+    launch: LaunchFile  # package and launch file, which has an argument `follower`
     follower_package: str
     followers: str  # glob pattern of files, some of which are followers: below the
     # package's folder, or python://PACKAGE/... for modules
@@ -31,8 +37,8 @@ class CourseFile:
     commands: str  # topic of geometry_msgs/Twist, one for each image
     odometry: str  # topic of nav_msgs/Odometry, true poses
     controllers: str  # namespace of the controller manager that takes the lockstep topics, or ""
-    lockstep: tuple[str, ...]  # topics that the world waits for after each image
-    sensors: tuple[str, ...]  # topics that go into the fingerprint
+    lockstep: Topics  # topics that the world waits for after each image
+    sensors: Topics  # topics that go into the fingerprint
     film_band: float  # share of the image's height at which the video marks the line; 0: nowhere
 
     def robot_name(self, launch_args: tuple[str, ...]) -> str:
