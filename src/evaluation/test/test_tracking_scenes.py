@@ -1,6 +1,6 @@
 """The scenes: what a seed draws, what the world files say, and that the follower manages them.
 
-The drives are those of evaluation.tracking.kinematic: the simulator's own pictures, no physics.
+The drives are those of kinematic_tracker.py: the simulator's own pictures, no physics.
 """
 
 import math

@@ -21,8 +21,6 @@ CHOICES = {
 }
 
 
-
-
 def _is_band(value: Any) -> bool:
     return are(value, is_number, 2) and value[0] < value[1] <= 1
 
