@@ -9,7 +9,7 @@ import signal
 import time
 from dataclasses import asdict, dataclass
 
-from evaluation.trial import Case, ReportedTrial
+from evaluation.trial import Case, Trial
 from run_session.failure import RunError
 
 
@@ -21,7 +21,7 @@ class Nap:
     files: int  # in the folder that the case got
 
 
-class SleepTrial(ReportedTrial):
+class SleepTrial(Trial):
     """Each case starts a process in a session of its own, notes its number, and sleeps."""
 
     program = "sleep_trial"

@@ -11,14 +11,13 @@ from sensor_msgs.msg import LaserScan
 from evaluation import localisation_drive
 from evaluation.command_line import NOT_RUN
 from evaluation.house import Records
-from evaluation.localisation_drive import (
+from evaluation.localisation_drive import SPEED, Steering
+from evaluation.localisation_results import (
     FINDING,
     KIDNAPS,
-    SPEED,
     Load,
-    Steering,
+    Search,
     Tracking,
-    Trial,
     right_since,
     searched,
 )
@@ -27,8 +26,8 @@ from evaluation.trial import run_trial
 from run_session.failure import RunError
 
 BEARINGS = np.radians(np.arange(-180.0, 180.0))
-TRIALS = [*(Trial(FINDING, n, (0.0, 0.0, 0.0), 5.0 + n, 0.02, 1.0, 0) for n in range(20)),
-          *(Trial(KIDNAPS, n, (0.0, 0.0, 0.0), 90.0, 0.02, 1.0, 0) for n in range(10))]
+TRIALS = [*(Search(FINDING, n, (0.0, 0.0, 0.0), 5.0 + n, 0.02, 1.0, 0) for n in range(20)),
+          *(Search(KIDNAPS, n, (0.0, 0.0, 0.0), 90.0, 0.02, 1.0, 0) for n in range(10))]
 TRACKING, LOAD = Tracking(300.0, 40.0, 0.03, 1.0, 0.1, 4.0), Load(2000, 60.0, 61.0, 6.0)
 GOOD = [*TRIALS, TRACKING, LOAD]
 
@@ -80,7 +79,7 @@ def test_limits(results, passes):
 
 
 def test_a_robot_without_any_pose_is_told_in_words():
-    lost = Trial(FINDING, 1, (0.0, 0.0, 0.0), None, None, None, 0)
+    lost = Search(FINDING, 1, (0.0, 0.0, 0.0), None, None, None, 0)
     assert lost.line.endswith("not found, no pose at the end")
 
 

@@ -10,7 +10,7 @@ from evaluation import live
 from evaluation.command_line import run_program
 
 
-class Drive(live.LiveDrive):
+class FakeDrive(live.LiveDrive):
     """Ends at once; `reports` has what it wrote."""
 
     program, writes = "drive", ("report.json",)
@@ -57,7 +57,7 @@ class Ending:
 
 def test_ctrl_c_after_the_drive_does_not_lose_its_report(tmp_path, monkeypatch):
     monkeypatch.setattr(live, "Session", Ending)
-    drive = Drive(tmp_path)
+    drive = FakeDrive(tmp_path)
     with pytest.raises(KeyboardInterrupt):
         live.run_live(drive)
     assert [report["outcome"] for report in drive.reports] == ["passed"]
@@ -83,7 +83,7 @@ class Film:
 
 def test_a_full_disk_is_one_line_and_the_film_is_closed_too(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(live, "Session", Whole)
-    drive = Drive(tmp_path)
+    drive = FakeDrive(tmp_path)
     drive.film = Film()
 
     def write(report):

@@ -8,7 +8,7 @@ import pytest
 
 from evaluation.command_line import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.report import cell, table
-from evaluation.trial import Case, ReportedTrial, from_json, run_trial
+from evaluation.trial import Case, Trial, from_json, run_trial
 from run_session.failure import RunError
 
 
@@ -20,7 +20,7 @@ class Square:
     value: int
 
 
-class Squares(ReportedTrial):
+class Squares(Trial):
     """Squares numbers; `fails` at one of them, and `most` is the largest good one."""
 
     program = "squares"

@@ -28,7 +28,7 @@ from evaluation.autorace_judge import (
 from evaluation.command_line import Parser, one_of
 from evaluation.picture import CAR, FAINT, LAPS, LINE, WHITE, legend, map_sheet, pixels, write_png
 from evaluation.report import cell, mean, table
-from evaluation.trial import Case, ReportedTrial
+from evaluation.trial import Case, Trial
 from run_session import simulator
 from run_session.failure import RunError
 from run_session.launch import Launched
@@ -170,7 +170,7 @@ class DriveResult:
                 f" x{self.light:.2f}")
 
 
-class RaceTrial(ReportedTrial):
+class RaceTrial(Trial):
     """All drives at one ROS master."""
 
     program = "autorace"

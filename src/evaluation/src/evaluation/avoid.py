@@ -18,7 +18,7 @@ from learning_laser import hall
 from evaluation.command_line import Parser, one_of
 from evaluation.picture import write_tiles
 from evaluation.report import cell, mean, table
-from evaluation.trial import Case, ReportedTrial
+from evaluation.trial import Case, Trial
 from run_session.failure import RunError
 from run_session.files import Tail, find_package
 from run_session.launch import Launched
@@ -65,7 +65,7 @@ class Hall(Case):
     seed: int
 
 
-class AvoidTrial(ReportedTrial):
+class AvoidTrial(Trial):
     """Every hall must be driven through without a contact."""
 
     program = "avoid"

@@ -14,7 +14,7 @@ from racecar_description.track.closed_line import load_track
 
 from evaluation.lap import Disturbance
 from evaluation.report import cell, mean
-from evaluation.trial import ReportedTrial
+from evaluation.trial import Trial
 from run_session.files import find_package
 from run_session.session import Session
 from trial_worlds.light import write_lit_world
@@ -100,7 +100,7 @@ class LapRecord:
     report: dict
 
 
-class LapTrial(ReportedTrial):
+class LapTrial(Trial):
     """Sets up and runs the drives; subclasses judge them."""
 
     result: type[LapDrive]

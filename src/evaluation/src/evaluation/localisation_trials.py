@@ -10,24 +10,20 @@ import numpy as np
 
 from evaluation.command_line import Parser
 from evaluation.house import load_house
-from evaluation.localisation_drive import (
+from evaluation.localisation_drive import LocalisationStack, find, kidnap, measure_load, track
+from evaluation.localisation_results import (
     FINDING,
     KIDNAPS,
     LEAST_SHARES,
     LIMITS,
     LIMITS_IN_REPORT,
     Load,
-    LocalisationStack,
     Result,
+    Search,
     Tracking,
-    Trial,
-    find,
-    kidnap,
-    measure_load,
-    track,
 )
 from evaluation.report import grouped, table
-from evaluation.trial import Case, ReportedTrial, from_json
+from evaluation.trial import Case, Trial, from_json
 from map_server.errors import MapFileError
 from map_server.map_files import write_map
 from run_session.failure import RunError
@@ -44,7 +40,7 @@ class LocalisationCase(Case):
     amount: int  # its number, or s, simulated
 
 
-class LocalisationTrial(ReportedTrial):
+class LocalisationTrial(Trial):
     """All cases run in one simulator, which is started for the first of them."""
 
     program = "localisation_trials"
@@ -111,11 +107,11 @@ class LocalisationTrial(ReportedTrial):
         others = {each.name: asdict(each) for each in _others(results)}
         return {"passed": self.passed(results), "limits": LIMITS_IN_REPORT,
                 "trials": [{**asdict(each), "right": each.right} for each in results
-                           if isinstance(each, Trial)],
+                           if isinstance(each, Search)],
                 "tracking": others.get("tracking"), "load": others.get("load")}
 
     def from_values(self, values: dict) -> list[Result]:
-        found = [from_json(Trial, each) for each in values["trials"]]
+        found = [from_json(Search, each) for each in values["trials"]]
         return found + [from_json(kind, values[kind.name]) for kind in (Tracking, Load)
                         if values[kind.name]]
 
@@ -131,9 +127,9 @@ def _bring_up(session: Session, options: argparse.Namespace) -> LocalisationStac
     return stack
 
 
-def _sets(results: Sequence[Result]) -> dict[str, list[Trial]]:
-    return grouped((each for each in results if isinstance(each, Trial)), lambda each: each.set)
+def _sets(results: Sequence[Result]) -> dict[str, list[Search]]:
+    return grouped((each for each in results if isinstance(each, Search)), lambda each: each.set)
 
 
 def _others(results: Sequence[Result]) -> list[Tracking | Load]:
-    return [each for each in results if not isinstance(each, Trial)]
+    return [each for each in results if not isinstance(each, Search)]

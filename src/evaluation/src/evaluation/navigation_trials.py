@@ -13,7 +13,7 @@ from evaluation import yard_judge
 from evaluation.command_line import Parser
 from evaluation.picture import CAR, FAINT, GOOD, chart, lap_colour, write_tiles
 from evaluation.report import grouped, table_of
-from evaluation.trial import ReportedTrial
+from evaluation.trial import Trial
 from evaluation.yard_drive import NavigationStack, YardCase, drive_task, prepare, task_of
 from evaluation.yard_judge import CROSSINGS, REACHED, YARDS, DriveResult, Judge
 from run_session.failure import RunError
@@ -119,7 +119,7 @@ def _draw_ways(axes: object, drives: list[DriveResult], out: Path) -> tuple[str,
 PARAMETERS = Path("config") / "yard.yaml"
 
 
-class YardTrial(ReportedTrial):
+class YardTrial(Trial):
     """All drives run in one simulator, which is started for the first of them."""
 
     program = "navigation_trials"

@@ -48,6 +48,9 @@ class Trial(ABC):
     writes: ClassVar[str]  # the contents of the folder for results
     open_ended: ClassVar[bool] = False  # whether the results decide how many cases are needed
     shared: ClassVar[Sequence[str]] = ()  # options that are the same for all results in a report
+    result: ClassVar[type]  # a dataclass
+    listed: ClassVar[str] = "drives"  # the results' key in report.json
+    derived: ClassVar[Sequence[str]] = ()  # properties written there besides the fields
 
     # --- options and cases
 
@@ -94,14 +97,6 @@ class Trial(ABC):
     def table(self, results: Sequence[Any]) -> str:
         """The table of all results, for the terminal."""
 
-    @abstractmethod
-    def values(self, results: Sequence[Any]) -> dict:
-        """The content of report.json."""
-
-    @abstractmethod
-    def earlier(self, options: argparse.Namespace) -> list[Any]:
-        """The results to resume from; RunError if there are none but should be."""
-
     def pictures(self, results: Sequence[Any], out: Path) -> list[str]:
         """Draw pictures of the results; returns their names."""
         return []
@@ -128,13 +123,7 @@ class Trial(ABC):
         self.options = options
         return options
 
-
-class ReportedTrial(Trial):
-    """A trial whose report.json holds all of its results, from which --resume reads them."""
-
-    result: ClassVar[type]  # a dataclass
-    listed: ClassVar[str] = "drives"  # the results' key in report.json
-    derived: ClassVar[Sequence[str]] = ()  # properties written there besides the fields
+    # --- report.json, which holds all results, and from which --resume reads them
 
     def values(self, results: Sequence[Any]) -> dict:
         """The content of report.json."""

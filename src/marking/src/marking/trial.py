@@ -17,7 +17,7 @@ from racecar_description.track.closed_line import load_track
 
 from evaluation.command_line import Parser
 from evaluation.lap_trial import MODEL_PATH
-from evaluation.trial import REPORT, Case, ReportedTrial
+from evaluation.trial import REPORT, Case, Trial
 from marking.bubblewrap import Kind, available, hidden, namespace, shown
 from marking.case_files import COURSES, CaseFile, Scene, make_scene
 from marking.case_runner import BY_TIME
@@ -65,7 +65,7 @@ class Record:
     driven: bool = True  # False: there was nothing to drive
 
 
-class MarkingTrial(ReportedTrial):
+class MarkingTrial(Trial):
     """One case for each combination of submission, track and seed."""
 
     package, program = "marking", "mark"
