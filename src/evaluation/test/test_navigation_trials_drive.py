@@ -99,7 +99,7 @@ def drive(rig, task):
     """The result, and where it went."""
     driving.prepare(rig, task)
     judge = Judge(task.cylinders, RADIUS)
-    return driving.drive(rig, task, judge), judge.path
+    return driving.drive_task(rig, task, judge), judge.path
 
 
 def test_a_drive_into_an_obstacle_is_a_contact():

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import math
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -82,7 +84,7 @@ def load_course(name: str | Path) -> CourseSpec:
     path = FOLDER / f"{name}.yaml" if not str(name).endswith(".yaml") else Path(name)
     if not path.exists():
         known = ", ".join(sorted(found.stem for found in FOLDER.glob("*.yaml")))
-        raise CourseError(f"{path}: No such file or directory; there are: {known}")
+        raise CourseError(f"{path}: {os.strerror(errno.ENOENT)}; there are: {known}")
     course = to_record(CourseSpec, read_yaml(path, CourseError), path, CourseError)
     for key, known in CHOICES.items():
         if getattr(course, key) not in known:

@@ -165,86 +165,86 @@ NEAR_AHEAD, NEAR_BESIDE = 0.55, 0.28  # m from the laser, below which it turns
 CLEAR_AHEAD = 0.8  # m, above which it goes straight on again
 
 
-def find(rig: LocalisationStack, ground: Ground, seed: int, number: int) -> Search:
+def find(stack: LocalisationStack, ground: Ground, seed: int, number: int) -> Search:
     """Global localisation: a robot at an unknown place in the house."""
     random = np.random.default_rng([seed, number, 0])
     place = _draw_place(ground, random)
-    rig.put(place)
-    rig.forget()
-    return _search(rig, FINDING, number, place, random)
+    stack.put(place)
+    stack.forget()
+    return _search(stack, FINDING, number, place, random)
 
 
-def kidnap(rig: LocalisationStack, ground: Ground, seed: int, number: int) -> Search:
+def kidnap(stack: LocalisationStack, ground: Ground, seed: int, number: int) -> Search:
     """Kidnapped robot: a localised robot is moved elsewhere while it drives."""
     random = np.random.default_rng([seed, number, 1])
-    _begin_known(rig, ground, random)
-    with wandering(seed, rig.may_go_on):
-        _watch_for(rig, SETTLE, f"before {KIDNAPS} {number}", "driving until it is carried away")
-    place = _draw_place(ground, random, rig.watch.records.true_pose)
-    rig.put(place)
-    return _search(rig, KIDNAPS, number, place, random)
+    _begin_known(stack, ground, random)
+    with wandering(seed, stack.may_go_on):
+        _watch_for(stack, SETTLE, f"before {KIDNAPS} {number}", "driving until it is carried away")
+    place = _draw_place(ground, random, stack.watch.records.true_pose)
+    stack.put(place)
+    return _search(stack, KIDNAPS, number, place, random)
 
 
-def track(rig: LocalisationStack, ground: Ground, seed: int, seconds: float) -> Tracking:
+def track(stack: LocalisationStack, ground: Ground, seed: int, seconds: float) -> Tracking:
     """A long drive from a slightly wrong initial pose; the first SETTLE seconds do not count."""
     random = np.random.default_rng([seed, 0, 2])
-    _begin_known(rig, ground, random)
-    with wandering(seed, rig.may_go_on):
-        _watch_for(rig, SETTLE, "tracking", "finding itself")
-        since, before = rig.now, rig.watch.records.length
-        _watch_for(rig, seconds, "tracking", "driving")
-    records = rig.watch.records
+    _begin_known(stack, ground, random)
+    with wandering(seed, stack.may_go_on):
+        _watch_for(stack, SETTLE, "tracking", "finding itself")
+        since, before = stack.now, stack.watch.records.length
+        _watch_for(stack, seconds, "tracking", "driving")
+    records = stack.watch.records
     _, errors = records.errors(since)
     if not len(errors):
         raise RunError("amcl said no pose while it should have tracked the robot")
     return tracking(seconds, records.length - before, errors)
 
 
-def measure_load(rig: LocalisationStack, ground: Ground, seed: int, seconds: float) -> Load:
+def measure_load(stack: LocalisationStack, ground: Ground, seed: int, seconds: float) -> Load:
     """CPU time of amcl with a constant number of particles, at real-time pace."""
-    rig.set_pace(1.0)
-    _begin_known(rig, ground, np.random.default_rng([seed, 0, 3]))
-    rig.set_particles(PARTICLES)
-    with wandering(seed, rig.may_go_on):
-        _watch_for(rig, SETTLE, "load", "driving off")
-        began, used, wall = rig.now, rig.cpu(), time.monotonic()
-        _watch_for(rig, seconds, "load", "driving")
-        simulated, used = rig.now - began, rig.cpu() - used
+    stack.set_pace(1.0)
+    _begin_known(stack, ground, np.random.default_rng([seed, 0, 3]))
+    stack.set_particles(PARTICLES)
+    with wandering(seed, stack.may_go_on):
+        _watch_for(stack, SETTLE, "load", "driving off")
+        began, used, wall = stack.now, stack.cpu(), time.monotonic()
+        _watch_for(stack, seconds, "load", "driving")
+        simulated, used = stack.now - began, stack.cpu() - used
         wall = time.monotonic() - wall
     return Load(PARTICLES, simulated, wall, 100.0 * used / simulated)
 
 
-def _begin_known(rig: LocalisationStack, ground: Ground, random: np.random.Generator) -> None:
+def _begin_known(stack: LocalisationStack, ground: Ground, random: np.random.Generator) -> None:
     place = _draw_place(ground, random)
-    rig.put(place)
-    rig.tell(place + random.uniform(-1, 1, 3) * TOLD_OFF)
+    stack.put(place)
+    stack.tell(place + random.uniform(-1, 1, 3) * TOLD_OFF)
 
 
-def _search(rig: LocalisationStack, kind: str, number: int, place: np.ndarray,
+def _search(stack: LocalisationStack, kind: str, number: int, place: np.ndarray,
             random: np.random.Generator) -> Search:
     """Drives until the pose has been right for long enough, or no longer can be in time."""
-    began = looked = rig.now
+    began = looked = stack.now
     since, what, part = None, "searching", f"{kind} {number}"
-    with wandering(int(random.integers(1 << 31)), rig.may_go_on):
-        while rig.now - began < LIMITS[kind] + HOLD:
-            rig.look(part, what)
-            if rig.now - looked < PERIOD:
+    with wandering(int(random.integers(1 << 31)), stack.may_go_on):
+        while stack.now - began < LIMITS[kind] + HOLD:
+            stack.look(part, what)
+            if stack.now - looked < PERIOD:
                 continue
-            looked = rig.now
-            times, errors = rig.watch.records.errors(began)
+            looked = stack.now
+            times, errors = stack.watch.records.errors(began)
             since = right_since(times, errors)
             what = "searching" if since is None else "right"
             if since is not None and times[-1] - since >= HOLD:
                 break
-    times, errors = rig.watch.records.errors(began)
+    times, errors = stack.watch.records.errors(began)
     return searched(kind, number, tuple(np.round(place, 3).tolist()), began, times, errors,
-                    len(rig.watch.records.contacts))
+                    len(stack.watch.records.contacts))
 
 
-def _watch_for(rig: LocalisationStack, seconds: float, part: str, what: str) -> None:
-    until = rig.now + seconds
-    while rig.now < until:
-        rig.look(part, what)
+def _watch_for(stack: LocalisationStack, seconds: float, part: str, what: str) -> None:
+    until = stack.now + seconds
+    while stack.now < until:
+        stack.look(part, what)
 
 
 def _draw_place(ground: Ground, random: np.random.Generator,

@@ -202,16 +202,16 @@ def task_of(case: YardCase) -> Task:
                 asdict(walk), walk)
 
 
-def prepare(rig: NavigationStack, task: Task) -> None:
+def prepare(stack: NavigationStack, task: Task) -> None:
     """Set up the task's world, with the robot at its start."""
-    rig.prepare(task.models, task.start)
+    stack.prepare(task.models, task.start)
     if task.walk is not None:
-        rig.wait(rig.person_listens, "the person")
+        stack.wait(stack.person_listens, "the person")
 
 
-def drive_task(rig: NavigationStack, task: Task, judge: Judge) -> DriveResult:
+def drive_task(stack: NavigationStack, task: Task, judge: Judge) -> DriveResult:
     """Drive from start to goal, or as far as the robot gets; the judge gets all samples."""
-    ended, pace = _watch(rig, judge, task)
+    ended, pace = _watch(stack, judge, task)
     straight, outcome = math.dist(task.start[:2], task.goal[:2]), _outcome(judge, ended, task.goal)
     if outcome == yard_judge.NOT_THERE:
         ended = f"from {judge.off(task.goal):.2f} m away"
@@ -221,34 +221,34 @@ def drive_task(rig: NavigationStack, task: Task, judge: Judge) -> DriveResult:
         distance=round(judge.distance, 3), straight_time=round(straight / ROBOT_SPEED, 2),
         shortest_time=round(task.shortest / ROBOT_SPEED, 2),
         to_obstacles=_known(judge.to_obstacles), to_person=_known(judge.to_person),
-        recoveries=list(rig.recoveries), slow_cycles=rig.slow_cycles,
+        recoveries=list(stack.recoveries), slow_cycles=stack.slow_cycles,
         real_time_factor=round(pace, 2), drawn=task.drawn)
 
 
-def _watch(rig: NavigationStack, judge: Judge, task: Task) -> tuple[str, float]:
+def _watch(stack: NavigationStack, judge: Judge, task: Task) -> tuple[str, float]:
     """Watch until the goal has ended; returns how, and the real-time factor."""
-    rig.send(task.goal)
+    stack.send(task.goal)
     began, ended = time.monotonic(), None
     heard, walk, walking = began, task.walk, None  # None: the person waits
     while ended is None:
-        ended = rig.result()  # before the samples, so that all of those before the end count
-        for sample in rig.samples(LOOK_PERIOD):
+        ended = stack.result()  # before the samples, so that all of those before the end count
+        for sample in stack.samples(LOOK_PERIOD):
             heard = time.monotonic()
             judge.see(sample)
             if walk and walking is None and sample.robot[0] >= walk.trigger:
                 walking = True
-                rig.walk(walk.speed)
+                stack.walk(walk.speed)
             elif walking and math.dist(sample.person[:2], walk.begin[:2]) > 2 * APPROACH:
                 walking = False
-                rig.walk(0.0)
+                stack.walk(0.0)
         if time.monotonic() > heard + SILENCE:
             raise RunError(f"no news of the robot for {SILENCE:.0f} s: the simulator hangs")
         if judge.contact or judge.time > LIMIT:
             ended = judge.contact or f"not there within {LIMIT:.0f} s"
     wall = time.monotonic() - began
     if walk:
-        rig.walk(0.0)
-    rig.end_goal()
+        stack.walk(0.0)
+    stack.end_goal()
     return ended, judge.time / wall
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -14,7 +13,7 @@ from pathlib import Path
 
 from run_session.failure import RunError
 from run_session.launch import describe_exit
-from run_session.master import is_up
+from run_session.master import free_port, is_up
 from run_session.processes import Child, Family
 from sim_bench.figures import Figure, figure
 from sim_bench.settings import Settings
@@ -33,7 +32,7 @@ class RosRun:
         self._family = family
         self.folder = folder
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.port = _free_port()
+        self.port = free_port(0)
         os.environ["ROS_MASTER_URI"] = self.master_uri = f"http://localhost:{self.port}"
         self._environment = dict(
             os.environ, ROS_LOG_DIR=str(folder / "ros"), PYTHONUNBUFFERED="1"
@@ -120,12 +119,6 @@ def read_lines(path: Path) -> list[tuple[float, ...]]:
         return []
     whole = path.read_text(encoding="ascii").rpartition("\n")[0]
     return [tuple(float(word) for word in line.split()) for line in whole.splitlines()]
-
-
-def _free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("", 0))
-        return probe.getsockname()[1]
 
 
 def cpu_figures(name: str, cpu: list[dict[str, float]], always: Sequence[str] = ()) -> list[Figure]:
