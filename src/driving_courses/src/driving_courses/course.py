@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import errno
-import math
-import os
-from dataclasses import dataclass
+import reprlib
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import yaml
 
 from driving_courses.errors import CourseError
 from driving_courses.packages import find_file
-from run_session.records import Length, Must, are, is_number, read_yaml, to_record
 
 FOLDER = Path(__file__).resolve().parent / "courses"
 CHOICES = {
@@ -23,16 +20,6 @@ CHOICES = {
 }
 
 
-def _is_band(value: Any) -> bool:
-    return are(value, is_number, 2) and value[0] < value[1] <= 1
-
-
-Bands = Annotated[tuple[tuple[float, float], ...], Must(
-    "a list of [from, to], each within 0..1", lambda value: bool(value) and are(value, _is_band))]
-Speeds = Annotated[tuple[float, float], Must("[0 or less, above 0]", lambda value: are(
-    value, lambda end: is_number(end, -math.inf), 2) and value[0] <= 0 < value[1])]
-
-
 @dataclass(frozen=True)
 class FeatureSpec:
     """What is looked for in a picture; see courses/line_follow.yaml."""
@@ -40,7 +27,7 @@ class FeatureSpec:
     size: tuple[int, int]  # px
     lower: tuple[int, int, int]  # hue 0..179, saturation, value
     upper: tuple[int, int, int]
-    bands: Bands  # parts of the height, from the top
+    bands: tuple[tuple[float, float], ...]  # parts of the height, from the top
     halves: bool
 
 
@@ -57,10 +44,10 @@ class CourseSpec:
     model: str
     drive: str
     settings: str
-    speeds: Speeds
-    turn: Length
-    steering_angle: Length
-    wheelbase: Length
+    speeds: tuple[float, float]
+    turn: float
+    steering_angle: float
+    wheelbase: float
     random_track: str
     features: FeatureSpec
 
@@ -82,12 +69,69 @@ class CourseSpec:
 def load_course(name: str | Path) -> CourseSpec:
     """The course of that name in courses/, or of a .yaml file; CourseError names file and key."""
     path = FOLDER / f"{name}.yaml" if not str(name).endswith(".yaml") else Path(name)
-    if not path.exists():
+    try:
+        values = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
         known = ", ".join(sorted(found.stem for found in FOLDER.glob("*.yaml")))
-        raise CourseError(f"{path}: {os.strerror(errno.ENOENT)}; there are: {known}")
-    course = to_record(CourseSpec, read_yaml(path, CourseError), path, CourseError)
+        raise CourseError(f"{path}: {error.strerror}; there are: {known}") from error
+    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
+        raise CourseError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") \
+            from error
+    course = _fill(CourseSpec, values, str(path))
     for key, known in CHOICES.items():
         if getattr(course, key) not in known:
             raise CourseError(f"{path}: {key}: must be one of {', '.join(map(repr, known))},"
                               f" is {getattr(course, key)!r:.80}")
     return course
+
+
+def _fill(kind: type, values: Any, place: str) -> Any:
+    """The dataclass `kind` from a mapping that has exactly its fields, of their types."""
+    expected = {field.name: field.type for field in fields(kind)}
+    given = set(values) if isinstance(values, dict) else set()
+    for key in [*sorted(map(str, given - set(expected))), *(k for k in expected if k not in given)]:
+        which = "unknown" if key in given else "missing"
+        raise CourseError(f"{place}: {which} key {key!r:.80}; there are: {', '.join(expected)}")
+    found = {}
+    for key, wanted in expected.items():
+        value = values[key]
+        if wanted == "FeatureSpec":
+            found[key] = _fill(FeatureSpec, value, f"{place}: {key}")
+        elif not _fits(value, wanted):
+            raise CourseError(f"{place}: {key}: must be {_WANTED[wanted]}, is "
+                              f"{reprlib.repr(value)[:80]}")
+        else:
+            found[key] = _frozen(value)
+    return kind(**found)
+
+
+def _fits(value: Any, wanted: str) -> bool:
+    if wanted == "float":
+        return type(value) in (int, float) and value > 0
+    if wanted == "tuple[float, float]":
+        return (isinstance(value, list) and len(value) == 2
+                and all(type(end) in (int, float) for end in value) and value[0] <= 0 < value[1])
+    if wanted in ("str", "bool"):
+        return type(value).__name__ == wanted
+    if not isinstance(value, list):
+        return False
+    if wanted == "tuple[str, ...]":
+        return all(isinstance(each, str) for each in value)
+    if wanted == "tuple[tuple[float, float], ...]":
+        return bool(value) and all(
+            isinstance(band, list) and len(band) == 2
+            and all(type(edge) in (int, float) for edge in band) and 0 <= band[0] < band[1] <= 1
+            for band in value)
+    return (len(value) == wanted.count("int")
+            and all(type(each) is int and each >= 0 for each in value))
+
+
+_WANTED = {"float": "a number above 0", "tuple[float, float]": "[0 or less, above 0]",
+           "str": "a text", "bool": "true or false",
+           "tuple[str, ...]": "a list of texts", "tuple[int, int]": "two whole numbers",
+           "tuple[int, int, int]": "three whole numbers",
+           "tuple[tuple[float, float], ...]": "a list of [from, to], each within 0..1"}
+
+
+def _frozen(value: Any) -> Any:
+    return tuple(map(_frozen, value)) if isinstance(value, list) else value

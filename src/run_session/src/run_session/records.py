@@ -48,14 +48,11 @@ def is_whole(value: object) -> bool:
 Length = Annotated[float, Must("a number above 0", lambda value: is_number(value) and value > 0)]
 MUST = {
     str: Must("a text", is_text),
-    bool: Must("true or false", lambda value: isinstance(value, bool)),
     int: Must("a whole number, 0 or more", is_whole),
     float: Must("a number, 0 or more", is_number),
     tuple[str, ...]: Must("a list of texts", lambda value: are(value, is_text)),
     tuple[int, ...]: Must("a list of whole numbers", lambda value: are(value, is_whole)),
     tuple[float, ...]: Must("a list of numbers", lambda value: are(value, is_number)),
-    tuple[int, int]: Must("two whole numbers", lambda value: are(value, is_whole, 2)),
-    tuple[int, int, int]: Must("three whole numbers", lambda value: are(value, is_whole, 3)),
 }
 
 
@@ -82,20 +79,19 @@ def check_keys(place: object, values: object, expected: Iterable[str],
                         f"are: {', '.join(expected)}")
 
 
-def to_record(kind: type[T], values: object, place: object, fault: type[Exception] = RunError,
-              within: str = "") -> T:
+def to_record(kind: type[T], values: object, place: object, within: str = "") -> T:
     """An instance of the dataclass `kind`, whose fields may be dataclasses; `place`: the file."""
-    check_keys(place, values, [field.name for field in fields(kind)], fault, within)
+    check_keys(place, values, [field.name for field in fields(kind)], within=within)
     found = {}
     for name, wanted in get_type_hints(kind, include_extras=True).items():
         value, key = values[name], f"{within}{name}"
         if is_dataclass(wanted):
-            found[name] = to_record(wanted, value, place, fault, f"{key}.")
+            found[name] = to_record(wanted, value, place, f"{key}.")
             continue
         own = get_args(wanted)[1:] if get_origin(wanted) is Annotated else ()
         must = own[-1] if own else MUST[wanted]
         if not must.fits(value):
-            raise fault(f"{place}: {key}: must be {must.be}, is {reprlib.repr(value)[:80]}")
+            raise RunError(f"{place}: {key}: must be {must.be}, is {reprlib.repr(value)[:80]}")
         found[name] = _frozen(value)
     return kind(**found)
 
