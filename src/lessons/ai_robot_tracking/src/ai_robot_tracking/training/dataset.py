@@ -21,7 +21,7 @@ INPUT_WIDTH, INPUT_HEIGHT = 320, 256  # px
 DAMAGED = (OSError, ValueError, KeyError, IndexError, TypeError, EOFError, BadZipFile)
 PICTURE, CLASS, BOX, COUNTS = 0, 1, slice(2, 6), 6  # columns of labels
 SHARD = 500  # images per file
-TRAIN_FIRST, CHECK_FIRST, TEST_FIRST = 1_000_000, 2_000_000, 3_000_000  # seeds; sets never overlap
+TRAIN_FIRST, TEST_FIRST = 1_000_000, 3_000_000  # seeds; sets never overlap
 
 
 @dataclass(frozen=True)

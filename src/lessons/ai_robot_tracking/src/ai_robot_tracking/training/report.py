@@ -24,6 +24,7 @@ from ai_robot_tracking.training.scoring import (
     average_precision,
     confusion,
     judge,
+    mean_average_precision,
     milliseconds,
     recall_by_size,
 )
@@ -135,9 +136,7 @@ def _curve(curve: list[list[float]]) -> list[str]:
 
 
 def _mean(judged: Judged, overlap: float) -> float:
-    each = [average_precision(judged.found, judged.truth, label, overlap)
-            for label in range(len(CLASSES))]
-    return float(np.nanmean(each))
+    return mean_average_precision(judged.found, judged.truth, len(CLASSES), overlap)
 
 
 def _text(value: float) -> str:
