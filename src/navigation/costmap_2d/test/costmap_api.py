@@ -63,13 +63,13 @@ class CostmapApi(unittest.TestCase):
         self.assertEqual((costmap.bare_footprint.shape, costmap.footprint.shape),
                          ((16, 2), (16, 2)))
         self.assertAlmostEqual(costmap.footprint[0, 0], 0.21)  # the radius is searched upwards
-        self.assertFalse(costmap.wait_until_ready(0.3))
+        self.assertFalse(costmap.is_ready())
         self.assertIsNone(costmap.robot_pose())
         self.assertFalse(costmap.update())
         self.assertFalse(costmap.clear_area(1.0))
 
         self.located = True
-        self.assertTrue(costmap.wait_until_ready(PATIENCE))
+        wait_until(costmap.is_ready, "it is ready")
         wait_until(lambda: len(self.marks()) == 2, "two obstacles")
         wait_until(lambda: costmap.robot_pose() is not None, "a pose")
         self.assertEqual(costmap.robot_pose().tolist(), [5.0, 0.0, 0.0])

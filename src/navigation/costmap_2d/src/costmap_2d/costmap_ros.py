@@ -102,10 +102,6 @@ class CostmapROS:
         """Whether the map (if required) and the robot's pose have come, and an update was made."""
         return self._ready.is_set()
 
-    def wait_until_ready(self, timeout_s: float) -> bool:
-        """Waits in wall time; returns whether it is ready."""
-        return self._ready.wait(timeout_s)
-
     def is_current(self) -> bool:
         """Whether it is ready, and no update or sensor (by `expected_update_rate`) is overdue."""
         frequency = self._values["update_frequency"]
