@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures the simulator beside what else there is; writes bench.json and bench.png (--help)."""
+"""Benchmarks the simulator against PyBullet's renderers and bare engine."""
 
 import signal
 import sys

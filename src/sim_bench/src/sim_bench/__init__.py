@@ -1,1 +1,1 @@
-"""`make bench`: measures the simulator beside what else there is; writes figures and a chart."""
+"""`make bench`: benchmarks the simulator against PyBullet's renderers and its bare engine."""

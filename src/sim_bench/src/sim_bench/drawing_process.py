@@ -1,4 +1,4 @@
-"""A renderer in a process of its own: OpenGL contexts do not meet, and a crash is not ours."""
+"""Keeps OpenGL contexts apart, and a crash away from the benchmark: a renderer in a process."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ def _parser() -> Parser:
     parser = Parser(
         package="sim_bench",
         prog="bench.py",
-        description="Measure the simulator beside what else there is; write bench.json, bench.png.",
+        description="Benchmarks the simulator against PyBullet's renderers and bare engine.",
         epilog="Exit code: 0 all was measured, 2 something could not be. Figures decide nothing.",
     )
     names = ", ".join(PARTS)

@@ -1,7 +1,7 @@
 """The learning environment beside what gym-line-follower does with PyBullet's two renderers.
 
-Ours is all of LineFollow-v0's step: the wheels, 33 or 34 steps of the engine, or 8 or 9 with
-`timestep=0.004` (`coarse`), the picture, the score. Theirs is the part of such a step that PyBullet
+Ours is all of LineFollow-v0's step with `timestep=0.004` (`coarse`): the wheels, 8 or 9 steps of
+the engine, the picture, the score. Theirs is the part of such a step that PyBullet
 does, of the same scene: ten engine steps of 4 ms, getCameraImage as gym-line-follower calls it,
 and the picture as an array; no score. In two processes both count at once.
 """
@@ -24,7 +24,7 @@ from bullet_sim.physics.engine import STDOUT
 from bullet_sim.world import World
 from run_session.failure import RunError
 from sim_bench.course import CourseWorld, drive_of
-from sim_bench.drawing_process import OURS, PLUGIN, TINY
+from sim_bench.drawing_process import PLUGIN, TINY
 from sim_bench.figures import Figure, figure, ratio
 from sim_bench.pybullet_drawing import PybulletDrawing
 from sim_bench.settings import Settings
@@ -46,7 +46,7 @@ def measure(settings: Settings) -> list[Figure]:
     found = []
     for processes in (1, 2):
         pools = {kind: ProcessPoolExecutor(processes, multiprocessing.get_context("spawn"))
-                 for kind in (OURS, COARSE, TINY, PLUGIN)}
+                 for kind in (COARSE, TINY, PLUGIN)}
         try:
             for size in SIZES:
                 settings.say(f"environment steps at {size[0]}x{size[1]}, {processes} at once")
@@ -75,9 +75,8 @@ def _rates(pools: dict[str, ProcessPoolExecutor], size: tuple[int, int], process
                 rates[kind].append(total)
     name = f"{size[0]}x{size[1]}.{processes}"
     found = [figure(f"steps.{kind}.{name}", "1/s", values) for kind, values in rates.items()]
-    return found + [ratio(f"ratio.{ours}.{kind}.{name}", rates[ours], rates[kind])
-                    for ours in (OURS, COARSE) for kind in (TINY, PLUGIN)
-                    if kind in rates and ours in rates]
+    return found + [ratio(f"ratio.{COARSE}.{kind}.{name}", rates[COARSE], rates[kind])
+                    for kind in (TINY, PLUGIN) if kind in rates and COARSE in rates]
 
 
 def _rate(kind: str, size: tuple[int, int], seconds: float) -> float:
@@ -92,17 +91,15 @@ def _rate(kind: str, size: tuple[int, int], seconds: float) -> float:
 
 @lru_cache
 def _open(kind: str, size: tuple[int, int]) -> Callable[[], object]:
-    if kind in (OURS, COARSE):
-        return _our_step(size, 0.004 if kind == COARSE else None)
-    return _their_step(kind, size)
+    return _our_step(size) if kind == COARSE else _their_step(kind, size)
 
 
-def _our_step(size: tuple[int, int], timestep: float | None) -> Callable[[], object]:
+def _our_step(size: tuple[int, int]) -> Callable[[], object]:
     import gymnasium
 
     import driving_courses  # noqa: F401  (names the environments)
 
-    env = gymnasium.make("driving_courses/LineFollow-v0", size=size, timestep=timestep)
+    env = gymnasium.make("driving_courses/LineFollow-v0", size=size, timestep=SUB_STEP)
     env.reset(seed=0)
     action = np.array([SPEED, TURN], np.float32)
 

@@ -1,4 +1,4 @@
-"""What nothing on this machine can be quicker than, to read the other figures by.
+"""Lower bounds on this machine, to put the other figures in proportion.
 
 A plane of one colour over the whole picture, the least that OpenGL fills one with; a copy of a
 depth camera's frame of 1920x1080 in memory; and the same frame from one process to another over a

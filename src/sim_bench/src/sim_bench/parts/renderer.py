@@ -9,19 +9,16 @@ from __future__ import annotations
 
 import statistics
 
-import numpy as np
-
 from run_session.failure import RunError
 from sim_bench import analytic
 from sim_bench.course import CourseWorld
 from sim_bench.drawing_process import OURS, PLUGIN, TINY, DrawingProcess, Task
-from sim_bench.figures import Figure, figure, percentile, ratio
+from sim_bench.figures import Figure, figure, ratio
 from sim_bench.settings import Settings
 
 SIZES = ((320, 240), (640, 480), (1280, 720), (1920, 1080))  # px
 RUNS, FRAMES = 5, 3  # places of a lap; timed frames of each turn, of which the median counts
 COMPARED_SIZE, COMPARED_PLACES = (1920, 1080), 3
-SHARE = 0.999
 
 
 def measure(settings: Settings) -> list[Figure]:
@@ -70,10 +67,10 @@ def _frame_times(
 
 
 def _differences(ours: DrawingProcess, settings: Settings) -> list[Figure]:
-    """Away from edges, at some places of a lap: greatest and 99.9th percentile of grey levels."""
+    """Away from edges, at some places of a lap: the greatest difference in grey levels."""
     course = CourseWorld()
     waffle = course.spawn_waffle()
-    worst, high, share = [], [], []
+    worst = []
     for place in range(1 if settings.quick else COMPARED_PLACES):
         lap_share = place / COMPARED_PLACES
         task = Task(*COMPARED_SIZE, lap_share, frames=0, want_picture=True)
@@ -83,11 +80,5 @@ def _differences(ours: DrawingProcess, settings: Settings) -> list[Figure]:
         )
         off = analytic.difference(ours.draw(task).picture, truth)[truth.clear]
         worst.append(float(off.max()))
-        high.append(percentile(np.sort(off).tolist(), SHARE))
-        share.append(100 * off.size / truth.clear.size)
     course.close()
-    return [
-        figure("difference.max", "grey levels", worst),
-        figure("difference.p99_9", "grey levels", high),
-        figure("difference.compared", "% of pixels", share),
-    ]
+    return [figure("difference.max", "grey levels", worst)]
