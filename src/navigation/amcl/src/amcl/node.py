@@ -25,12 +25,11 @@ from amcl.settings import localisation_settings, sensor_settings, with_order
 from nav_algorithms import poses
 from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.monte_carlo import Localisation, Step
-from nav_nodes import clock
 from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, load_table, read_parameters, serve_changes
 from nav_nodes.program import init_node, spin
-from nav_nodes.topic_watchdog import TopicWatchdog
+from nav_nodes.topic_watchdog import TopicWatchdog, watch_clock
 
 TABLE = Path("params/amcl.yaml")  # below the package's folder
 SCAN_PATIENCE = 0.5               # s of wall time to wait for a scan's odometry
@@ -50,7 +49,7 @@ class AmclNode:
         self._lock = threading.RLock()
         self._random = np.random.default_rng(values["seed"])
         self._missing_data = MissingData()
-        clock.watch(self._missing_data)
+        watch_clock(self._missing_data)
         self._frames = RobotFrames(self._values, self._missing_data)
         self._grid: OccupancyGrid | None = None
         self._localisation: Localisation | None = None

@@ -6,11 +6,11 @@ import rospy
 
 from costmap_2d.costmap_ros import CostmapROS
 from costmap_2d.settings import SEARCHED_UPWARDS
-from nav_nodes import clock
 from nav_nodes.ignored import below, warn_of_ignored
 from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError
 from nav_nodes.program import init_node, spin
+from nav_nodes.topic_watchdog import watch_clock
 from nav_nodes.transforms import Transforms
 
 
@@ -18,7 +18,7 @@ def main() -> int:
     """Runs `~costmap` until shutdown; returns the exit status."""
     init_node("costmap_node")
     missing_data = MissingData()
-    clock.watch(missing_data)
+    watch_clock(missing_data)
     try:
         costmap = CostmapROS("costmap", Transforms(missing_data), missing_data)
     except ParameterError as error:

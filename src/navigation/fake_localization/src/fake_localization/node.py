@@ -22,12 +22,11 @@ from fake_localization.poses import (
     transform_matrix,
     transform_of,
 )
-from nav_nodes import clock
 from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node
-from nav_nodes.topic_watchdog import is_published, why_silent
+from nav_nodes.topic_watchdog import is_published, watch_clock, why_silent
 from nav_nodes.transforms import NEWEST, Transforms
 
 WAITING = 100  # poses that wait for the odometry of their moment, at most; upstream's number
@@ -50,7 +49,7 @@ class FakeLocalization:
         self._ahead = rospy.Duration.from_sec(values["transform_tolerance"])
         self._offset = offset(values["delta_x"], values["delta_y"], values["delta_yaw"])
         self._missing_data = MissingData()
-        clock.watch(self._missing_data)
+        watch_clock(self._missing_data)
         self._transforms = Transforms(self._missing_data, (self._odom, self._base))
         self._waiting: deque[Odometry] = deque(maxlen=WAITING)
         self._came = threading.Condition()

@@ -16,14 +16,13 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64
 
 from gmapping.mapper import TABLE, Mapper, ScanError
-from nav_nodes import clock
 from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.laser_mount import Mount, Mounts
 from nav_nodes.messages import MapAnswer, grid_message, transform_message
 from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
-from nav_nodes.topic_watchdog import TopicWatchdog
+from nav_nodes.topic_watchdog import TopicWatchdog, watch_clock
 from nav_nodes.transforms import Transforms
 
 PATIENCE = 0.5  # s of wall time to wait for a scan's odometry
@@ -45,7 +44,7 @@ class SlamNode:
         self._lock = threading.Lock()
         self._mapper = Mapper(values)
         self._missing_data = MissingData()
-        clock.watch(self._missing_data)
+        watch_clock(self._missing_data)
         self._transforms = Transforms(self._missing_data, (self._frames["odom_frame"],
                                                          self._frames["base_frame"]))
         self._mounts = Mounts(self._frames["base_frame"], self._transforms, self._missing_data)

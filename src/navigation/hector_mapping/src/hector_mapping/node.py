@@ -20,14 +20,13 @@ from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
 from nav_algorithms import poses
 from nav_algorithms.scan_slam import ScanSlam, ScanSlamSettings
-from nav_nodes import clock
 from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.laser_mount import Mount, Mounts
 from nav_nodes.messages import MapAnswer, grid_message, pose_of, stamped_pose, transform_message
 from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
-from nav_nodes.topic_watchdog import TopicWatchdog
+from nav_nodes.topic_watchdog import TopicWatchdog, watch_clock
 from nav_nodes.transforms import Transforms
 
 PATIENCE = 0.5  # s of wall time to wait for a scan's transforms
@@ -58,7 +57,7 @@ class HectorMapping:
             values[name].lstrip("/") for name in ("map_frame", "odom_frame", "base_frame"))
         self._lock = threading.Lock()
         self._missing_data = MissingData()
-        clock.watch(self._missing_data)
+        watch_clock(self._missing_data)
         self._transforms = Transforms(self._missing_data, (self._odom_frame, self._base_frame))
         self._mounts = Mounts(self._base_frame, self._transforms, self._missing_data)
         self._watchdog = TopicWatchdog(self._missing_data, "laser scans", values["scan_topic"])

@@ -20,12 +20,12 @@ from nav_msgs.srv import (
 from map_server.errors import MapFileError, MapImageError, MapMetadataError, MapMissingError
 from map_server.map_files import load_map, read_map
 from map_server.metadata import COARSEST, FINEST, MapMetadata
-from nav_nodes import clock
 from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.messages import LoadedMapAnswer, MapAnswer, grid_message, quaternion_of
 from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
+from nav_nodes.topic_watchdog import wait_for_clock
 
 USAGE = ("usage: map_server MAP.yaml (or, deprecated: map_server IMAGE RESOLUTION, with "
          f"{FINEST:g} to {COARSEST:g} m a pixel)")
@@ -91,7 +91,7 @@ def main() -> int:
     except (MapFileError, ParameterError) as error:
         rospy.logerr("%s", error)
         return FAILED
-    if clock.wait_until_it_runs(MissingData()):  # a map's stamp must not be 0
+    if wait_for_clock(MissingData()):  # a map's stamp must not be 0
         MapServer(loaded, values["frame_id"])
         spin()
     return 0

@@ -30,12 +30,12 @@ from move_base.state_machine import Patience, State, StateMachine
 from move_base.status import keep_telling
 from move_base.watch import Watch
 from nav_algorithms.costmap.footprint import reach
-from nav_nodes import clock
 from nav_nodes.ignored import below, warn_of_ignored
 from nav_nodes.messages import stamped_pose
 from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import ParameterError, read_parameters, serve_changes
 from nav_nodes.program import init_node, spin
+from nav_nodes.topic_watchdog import watch_clock
 from nav_nodes.transforms import Transforms
 
 KILLED = "Aborting on the goal because the node has been killed"
@@ -50,7 +50,7 @@ class MoveBase:
         values = self._values = read_parameters(table("move_base"))
         kinds = self._planner_kinds(values)
         missing_data = MissingData()
-        clock.watch(missing_data)
+        watch_clock(missing_data)
         self._transforms = Transforms(missing_data)
         self._costmaps = (CostmapROS("global_costmap", self._transforms, missing_data),
                           CostmapROS("local_costmap", self._transforms, missing_data))

@@ -71,21 +71,26 @@ class MissingData:
 
     def _line(self, now: float) -> str:
         """The line to log now, or ""; a new absence does not wait for the INTERVAL of others."""
-        missed = {what: entry for what, entry in self._absent.items() if now - entry.seen <= RECENT}
-        causes = [entry.since for entry in missed.values()
-                  if not entry.is_result and now - entry.since >= self._patience]
-        known = {what: entry for what, entry in missed.items()
-                 if now - entry.since >= entry.patience and not (
-                     entry.is_result and any(abs(entry.since - cause) < SOON for cause in causes))}
-        known = {what: entry for what, entry in known.items() if entry.is_root} or known
-        chosen = {what: entry for what, entry in known.items() if entry.said is None}
-        if chosen:
-            if all(now - entry.since < entry.patience + GATHERING for entry in chosen.values()):
-                return ""
-        elif all(now - entry.said >= INTERVAL for entry in known.values()):
-            chosen = known
-        for entry in chosen.values():
+        known = self._known(now)
+        new = {what: entry for what, entry in known.items() if entry.said is None}
+        if new:
+            gathering = all(now - entry.since < entry.patience + GATHERING
+                            for entry in new.values())
+            due = {} if gathering else new
+        else:
+            due = known if all(now - entry.said >= INTERVAL for entry in known.values()) else {}
+        for entry in due.values():
             entry.said = now
         return "; ".join(f"no {what} for {now - entry.since:.0f} s"
                          + (f": {entry.advice}" if entry.advice else "")
-                         for what, entry in chosen.items())
+                         for what, entry in due.items())
+
+    def _known(self, now: float) -> dict[str, _Absence]:
+        """What has been missing for longer than its patience, and follows from nothing else."""
+        recent = {what: entry for what, entry in self._absent.items() if now - entry.seen <= RECENT}
+        causes = [entry.since for entry in recent.values()
+                  if not entry.is_result and now - entry.since >= self._patience]
+        known = {what: entry for what, entry in recent.items()
+                 if now - entry.since >= entry.patience and not (
+                     entry.is_result and any(abs(entry.since - cause) < SOON for cause in causes))}
+        return {what: entry for what, entry in known.items() if entry.is_root} or known

@@ -1,16 +1,24 @@
-"""Why a topic may be silent, as far as a subscriber can tell."""
+"""Who notices that a topic is silent, /clock among them, and why it may be.
+
+While the simulated clock does not run, one line is logged about that, and no other.
+"""
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 import rospy
+from rosgraph_msgs.msg import Clock
 
 from nav_nodes.missing_data import MissingData
 
 QUIET = 1.0  # s of wall time without a message until it is reported
+CLOCK = "simulated clock /clock"
+LOOK = 0.25   # s of wall time between two checks
+STILL = 1.0   # s of wall time without a tick until its publishers are checked
 
 
 def is_published(topic: rospy.Subscriber) -> bool:
@@ -54,3 +62,38 @@ class TopicWatchdog:
             self._missing_data.missing(what, why_silent(topic, self._name), since=self._last)
         else:
             self._missing_data.present(what)
+
+
+def watch_clock(missing_data: MissingData) -> None:
+    """Start a watching thread, if /use_sim_time is true. A paused simulation is not a fault."""
+    if not rospy.rostime.is_wallclock():
+        threading.Thread(target=_watch_clock, args=(missing_data,), daemon=True).start()
+
+
+def wait_for_clock(missing_data: MissingData) -> bool:
+    """Wait until time is not 0, which no message's stamp may be; False at shutdown."""
+    watch_clock(missing_data)
+    while rospy.Time.now().is_zero() and not rospy.is_shutdown():
+        time.sleep(LOOK / 5)
+    return not rospy.is_shutdown()
+
+
+def _watch_clock(missing_data: MissingData) -> None:
+    before, changed = rospy.Time.now(), time.monotonic()
+    ticks = rospy.Subscriber("/clock", Clock, queue_size=1)
+    while not rospy.is_shutdown():
+        now = rospy.Time.now()
+        if now != before:
+            before, changed = now, time.monotonic()
+        stands = time.monotonic() - changed > STILL and not is_published(ticks)
+        if now.is_zero() or stands:
+            missing_data.missing(CLOCK, _why_clock_stands(ticks), since=changed, is_root=True)
+        else:
+            missing_data.present(CLOCK)
+        time.sleep(LOOK)
+
+
+def _why_clock_stands(ticks: rospy.Subscriber) -> str:
+    advice = ("its publisher is silent, is the simulation paused?" if is_published(ticks)
+              else "nobody publishes it; start the simulator.")
+    return f"{advice} Or rosparam set use_sim_time false and start again"
