@@ -20,10 +20,11 @@ from bullet_sim.control.controllers.mobile_base import UNBOUNDED, BaseOptions, S
 from bullet_sim.control.controllers.servo import PositionServo, VelocityServo
 from bullet_sim.control.hardware import RobotHardware
 from bullet_sim.control.pid import Pid, PidGains
-from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
+from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters, wheels_from_tags
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim.formats.urdf.transmission import read_transmissions
 from bullet_sim.model import Model
+from bullet_sim.plugin_tags import PluginParameters
 from bullet_sim.tick_rate import TickRate
 from bullet_sim.world import World
 from driving_courses.packages import find_file
@@ -47,14 +48,12 @@ class GazeboDiffDrive:
     steers = False
 
     def __init__(self, world: World, robot: Model, _urdf: Element, _settings: Path | None):
-        tags = next(plugin.element for plugin in robot.description.plugins
+        tags = next(PluginParameters(robot.name, plugin) for plugin in robot.description.plugins
                     if plugin.filename == "libgazebo_ros_diff_drive.so")
-        joints = (robot.joint(tags.findtext(tag)) for tag in ("leftJoint", "rightJoint"))
-        numbers = (float(tags.findtext(tag)) for tag in (
-            "wheelSeparation", "wheelDiameter", "wheelAcceleration", "wheelTorque"))
-        self._drive = DiffDrive(*joints, DiffDriveParameters(*numbers))
+        self._drive = DiffDrive(
+            *wheels_from_tags(robot, tags), DiffDriveParameters.from_tags(tags))
         self._world, self._updated = world, world.time
-        self._rate = TickRate(float(tags.findtext("updateRate")), world.timestep, world.tick)
+        self._rate = TickRate(tags.number("updateRate", 100.0), world.timestep, world.tick)
         self.command = self._drive.command
 
     def run(self, until: int) -> None:

@@ -6,6 +6,7 @@ import pytest
 
 from bullet_sim.control.pid import PidGains
 from bullet_sim.description import JointLimits
+from bullet_sim.errors import PluginError
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import params
 from bullet_sim_ros.control import (
@@ -14,7 +15,6 @@ from bullet_sim_ros.control import (
 )
 from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.joint_parameters import read_joint_gains, read_joint_limits
-from bullet_sim_ros.errors import PluginError
 
 
 def parameters(values):

@@ -11,13 +11,13 @@ from bullet_sim.description import (
     PluginDescription,
     SensorDescription,
 )
+from bullet_sim.errors import PluginError
+from bullet_sim.plugin_tags import PluginParameters
 from bullet_sim.world import World
-from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.plugin_host import registry
 from bullet_sim_ros.plugin_host.context import PluginHost
-from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.plugin_host.registry import load_plugins, plugin
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.scheduler import Scheduler

@@ -25,6 +25,10 @@ class SimulationError(Exception):
         return shortened(super().__str__())
 
 
+class PluginError(SimulationError):
+    """A plugin that cannot work as written; the message names the tag."""
+
+
 class FormatError(SimulationError):
     """A model, world, material or xacro text is invalid."""
 

@@ -3,10 +3,6 @@
 from bullet_sim.errors import SimulationError
 
 
-class PluginError(SimulationError):
-    """A plugin that cannot work as written; the message names the tag."""
-
-
 def format_error(error: Exception) -> str:
     """One line for the terminal, with the error's type if it is not a SimulationError."""
     text = " ".join(str(error).split())

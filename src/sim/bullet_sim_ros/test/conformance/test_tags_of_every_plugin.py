@@ -2,8 +2,8 @@
 
 import pytest
 
+from bullet_sim.plugin_tags import PluginParameters
 from bullet_sim_ros.plugin_host import registry
-from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.plugins import register_plugins
 
 register_plugins()

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from bullet_sim.description import ModelDescription, WorldDescription
 from bullet_sim.formats.resources import Resources
 from bullet_sim.meshes.images import warn_if_unreadable
+from bullet_sim.plugin_tags import defaults
 from bullet_sim.pose import IDENTITY
 from bullet_sim.world import World
 from bullet_sim_ros import loop
 from bullet_sim_ros.interface import APPROXIMATED
 from bullet_sim_ros.params import NodeParameters
-from bullet_sim_ros.plugin_host.plugin_tags import defaults
 from bullet_sim_ros.plugin_host.unknown import log as unknown_plugins
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.services.models import with_namespace

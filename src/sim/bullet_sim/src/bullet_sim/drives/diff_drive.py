@@ -1,10 +1,14 @@
 """Differential drive: two velocity motors, with a limit on wheel acceleration."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.joint import Joint
+from bullet_sim.model import Model
+from bullet_sim.plugin_tags import LoggedParameters, PluginParameters
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.twist import add, dot, negative
 
@@ -22,6 +26,20 @@ class DiffDriveParameters:
     wheel_diameter: float = 0.15  # m
     wheel_acceleration: float = 0.0  # m/s^2 at the rim; 0: immediate
     wheel_torque: float = 5.0  # N m
+
+    @classmethod
+    def from_tags(cls, tags: PluginParameters | LoggedParameters) -> DiffDriveParameters:
+        """Read from the tags of libgazebo_ros_diff_drive.so; PluginError if they are wrong."""
+        return cls(
+            tags.number("wheelSeparation", 0.34), tags.number("wheelDiameter", 0.15),
+            tags.number("wheelAcceleration", 0.0), tags.number("wheelTorque", 5.0))
+
+
+def wheels_from_tags(model: Model, tags: PluginParameters | LoggedParameters
+                     ) -> tuple[Joint, Joint]:
+    """The joints of the left and the right wheel, by tags; UnknownName if there is none."""
+    return (model.joint(tags.text("leftJoint", "left_joint")),
+            model.joint(tags.text("rightJoint", "right_joint")))
 
 
 class DiffDrive:

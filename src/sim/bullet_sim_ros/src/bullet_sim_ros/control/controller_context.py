@@ -7,11 +7,11 @@ import rospy
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.hardware import RobotHardware
 from bullet_sim.control.rate import Rate
+from bullet_sim.errors import PluginError
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import names
 from bullet_sim_ros.control.actions import LoopActionServer
 from bullet_sim_ros.control.controller_parameters import ControllerParameters
-from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext
 
 

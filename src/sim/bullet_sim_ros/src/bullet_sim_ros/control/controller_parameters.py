@@ -3,8 +3,8 @@
 import math
 from typing import Any
 
+from bullet_sim.errors import PluginError
 from bullet_sim_ros import names, params
-from bullet_sim_ros.errors import PluginError
 
 REQUIRED = object()  # stands for: there is no default
 

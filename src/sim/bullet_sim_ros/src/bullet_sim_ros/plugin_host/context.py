@@ -11,15 +11,16 @@ from geometry_msgs.msg import TransformStamped
 from rosgraph.names import is_legal_name
 
 from bullet_sim.description import PluginDescription, SensorDescription, Visual
+from bullet_sim.errors import PluginError
 from bullet_sim.link import Link
 from bullet_sim.model import Model
+from bullet_sim.plugin_tags import PluginParameters
 from bullet_sim.world import World
 from bullet_sim_ros import convert
 from bullet_sim_ros.drawing import DrawingThread
-from bullet_sim_ros.errors import PluginError, format_error
+from bullet_sim_ros.errors import format_error
 from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
-from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.scheduler import PeriodicTask, Scheduler, always
 from bullet_sim_ros.topic_faults import Senders
 

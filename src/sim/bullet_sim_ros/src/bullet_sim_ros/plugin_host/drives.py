@@ -7,10 +7,10 @@ from nav_msgs.msg import Odometry
 
 from bullet_sim.joint import Joint
 from bullet_sim.model import Model
+from bullet_sim.plugin_tags import LoggedParameters, PluginParameters
 from bullet_sim.sensors.odometry import OdometryReading, WheelOdometry, true_odometry
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.plugin_tags import LoggedParameters, PluginParameters
 
 
 def subscribe_commands(context: PluginContext, namespace: str, topic: str,

@@ -2,10 +2,10 @@
 
 import logging
 
+from bullet_sim.errors import PluginError
 from bullet_sim_ros import params
 from bullet_sim_ros.cameras.camera_stream import CameraStream
 from bullet_sim_ros.cameras.camera_topics import FARTHEST, CameraTopics, DepthCameraTopics
-from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.plugins")

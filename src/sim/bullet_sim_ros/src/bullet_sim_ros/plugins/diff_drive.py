@@ -5,14 +5,19 @@ import logging
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import JointState
 
-from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters, turns_backwards
+from bullet_sim.drives.diff_drive import (
+    DiffDrive,
+    DiffDriveParameters,
+    turns_backwards,
+    wheels_from_tags,
+)
 from bullet_sim.joint import Joint
+from bullet_sim.plugin_tags import LoggedParameters
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import WheelOdometry
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host import PluginContext, open_odometry, plugin, subscribe_commands
 from bullet_sim_ros.plugin_host.drives import OdometrySource, wheel_transform
-from bullet_sim_ros.plugin_host.plugin_tags import LoggedParameters
 
 log = logging.getLogger("bullet_sim.plugins")
 
@@ -29,11 +34,8 @@ class DiffDrivePlugin:
         name = context.model.name
         namespace = context.parameters.namespace(missing=name, empty=name)
         p = LoggedParameters(context.parameters, "DiffDrive", namespace)
-        self._joints = tuple(context.model.joint(joint) for joint in (
-            p.text("leftJoint", "left_joint"), p.text("rightJoint", "right_joint")))
-        geometry = DiffDriveParameters(
-            p.number("wheelSeparation", 0.34), p.number("wheelDiameter", 0.15),
-            p.number("wheelAcceleration", 0.0), p.number("wheelTorque", 5.0))
+        self._joints = wheels_from_tags(context.model, p)
+        geometry = DiffDriveParameters.from_tags(p)
         driven = self._as_driven(p.label, geometry)
         self._drive = DiffDrive(*driven, geometry)
         self._odometry_source = OdometrySource(context, p, driven, WheelOdometry(

@@ -3,10 +3,10 @@
 import logging
 import math
 
+from bullet_sim.errors import PluginError
 from bullet_sim.mechanisms.grasp import Grasp, GraspParameters
-from bullet_sim_ros.errors import PluginError
+from bullet_sim.plugin_tags import PluginParameters
 from bullet_sim_ros.plugin_host import PluginContext, plugin
-from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 
 log = logging.getLogger("bullet_sim.plugins")
 

@@ -4,10 +4,10 @@ import rospy
 import tf2_ros
 from tf2_msgs.msg import TFMessage
 
+from bullet_sim.errors import PluginError
 from bullet_sim.mechanisms.spring_damper import SpringDamper
 from bullet_sim.pose import Pose
 from bullet_sim_ros import convert
-from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 WORLD = "world"

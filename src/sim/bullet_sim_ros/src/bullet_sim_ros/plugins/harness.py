@@ -6,9 +6,9 @@ from xml.etree.ElementTree import Element
 
 from std_msgs.msg import Bool, Float32
 
+from bullet_sim.errors import PluginError
 from bullet_sim.mechanisms.harness import Harness
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 UPWARDS = (0.0, 0.0, 1.0)

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from gazebo_msgs.srv import SetJointTrajectory, SetJointTrajectoryResponse
 from trajectory_msgs.msg import JointTrajectory
 
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import PluginError, SimulationError
 from bullet_sim.link import Link
 from bullet_sim.mechanisms.joint_poses import JointPose, JointPoses
 from bullet_sim.model import Model
 from bullet_sim_ros import convert, names
-from bullet_sim_ros.errors import PluginError, format_error
+from bullet_sim_ros.errors import format_error
 from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.plugins")

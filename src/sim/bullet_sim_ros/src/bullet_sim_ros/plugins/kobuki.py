@@ -10,11 +10,11 @@ from std_msgs.msg import Empty
 
 from bullet_sim.description import SensorDescription
 from bullet_sim.drives.kobuki import Kobuki
+from bullet_sim.errors import PluginError
 from bullet_sim.link import Link
 from bullet_sim.sensors.imu import ImuReading, ImuSensor
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim_ros import convert, names, params
-from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, plugin, subscribe_commands
 from bullet_sim_ros.plugin_host.drives import OdometryOutput
 from bullet_sim_ros.plugins.kobuki_events import BaseTopic, BumperTopic, CliffTopic, WheelDropTopic

@@ -5,12 +5,12 @@ from sensor_msgs.msg import JointState
 
 from bullet_sim.drives.tricycle import Tricycle, TricycleParameters
 from bullet_sim.joint import Joint
+from bullet_sim.plugin_tags import LoggedParameters
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import WheelOdometry
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host import PluginContext, open_odometry, plugin, subscribe_commands
 from bullet_sim_ros.plugin_host.drives import OdometrySource, wheel_transform
-from bullet_sim_ros.plugin_host.plugin_tags import LoggedParameters
 
 
 @plugin("libgazebo_ros_tricycle_drive.so")

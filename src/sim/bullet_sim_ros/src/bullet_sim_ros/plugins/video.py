@@ -6,11 +6,11 @@ import rospy
 from sensor_msgs.msg import Image
 
 from bullet_sim.description import Box, Cylinder, Geometry, Material, Mesh, Plane, Sphere, Visual
+from bullet_sim.errors import PluginError
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import LARGEST_PX
 from bullet_sim_ros import names
 from bullet_sim_ros.cameras.encodings import decode
-from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 _ABOVE = 0.51  # of the visual's height, from its middle: 1 % above its upper side

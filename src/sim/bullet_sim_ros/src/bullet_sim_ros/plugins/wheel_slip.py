@@ -2,7 +2,7 @@
 
 import logging
 
-from bullet_sim_ros.errors import PluginError
+from bullet_sim.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.plugins")

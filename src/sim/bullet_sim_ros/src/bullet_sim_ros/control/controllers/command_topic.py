@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from std_msgs.msg import Float64, Float64MultiArray
 
 from bullet_sim.control.controllers.commands import Commands
+from bullet_sim.errors import PluginError
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.convert import LARGEST, is_sane
-from bullet_sim_ros.errors import PluginError
 
 COMPLAINT_PERIOD = 10.0  # s, wall clock: a publisher of bad commands sends many
 

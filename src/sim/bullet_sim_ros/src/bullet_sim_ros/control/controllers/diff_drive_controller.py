@@ -8,6 +8,7 @@ from geometry_msgs.msg import TwistStamped
 from trajectory_msgs.msg import JointTrajectoryPoint
 
 from bullet_sim.control.controllers.diff_drive_controller import DiffDrive, DiffDriveGeometry
+from bullet_sim.errors import PluginError
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.mobile_base import (
@@ -17,7 +18,6 @@ from bullet_sim_ros.control.mobile_base import (
     read_wheel_radius,
 )
 from bullet_sim_ros.control.registry import controller
-from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.reconfigure_server import Value, offer_values
 
 MULTIPLIERS = (0.5, 1.5)

@@ -3,10 +3,10 @@
 from sensor_msgs.msg import JointState
 
 from bullet_sim.control.rate import Rate
+from bullet_sim.errors import PluginError
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.registry import Controller, controller
-from bullet_sim_ros.errors import PluginError
 
 
 @controller("joint_state_controller/JointStateController")

@@ -26,6 +26,7 @@ from bullet_sim.control.trajectory.follower import (
     Verdict,
 )
 from bullet_sim.control.trajectory.request import InvalidJoints, InvalidTrajectory
+from bullet_sim.errors import PluginError
 from bullet_sim_ros.control.actions import GoalSlot
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.pid import open_pid
@@ -36,7 +37,6 @@ from bullet_sim_ros.control.trajectory_messages import (
     read_tolerances,
     request_from_msg,
 )
-from bullet_sim_ros.errors import PluginError
 
 log = logging.getLogger("bullet_sim.control")
 Result = FollowJointTrajectoryResult

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from bullet_sim.errors import PluginError
 from bullet_sim.link import Link
+from bullet_sim.plugin_tags import PluginParameters
 from bullet_sim.sensors.error_model import ErrorModel, ErrorParameters
 from bullet_sim_ros import names
-from bullet_sim_ros.errors import PluginError
 from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, no_tf_prefix
-from bullet_sim_ros.plugin_host.plugin_tags import PluginParameters
 from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
 TAGS = {"offset": "offset", "drift": "drift", "drift_frequency": "driftFrequency",

@@ -10,7 +10,7 @@ from dataclasses import replace
 from xml.etree.ElementTree import Element
 
 from bullet_sim.description import PluginDescription
-from bullet_sim_ros.errors import PluginError
+from bullet_sim.errors import PluginError
 
 log = logging.getLogger("bullet_sim.plugins")
 
