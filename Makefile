@@ -80,7 +80,7 @@ help: ## list the commands
 
 # For those who test or change this repository.
 
-test: ### run all checks and tests [JOBS=3], or in 90 s those of changed packages and the core [FAST=1]
+test: ### run all checks and tests [JOBS=3], or in a minute the core's quick ones, and those of changed packages [FAST=1]
 	@scripts/test.sh $(if $(JOBS),--jobs "$(JOBS)") $(if $(filter-out 0 no false,$(FAST)),--fast)
 
 lint: ### check the style of the Python code, with ruff
