@@ -7,13 +7,13 @@ from xml.etree import ElementTree
 
 import pytest
 import rospy
-from gazebo_ros import model_source, spawn_arguments, spawning
+from gazebo_ros import model_source, spawning
 
 NEEDED = ["-urdf", "-param", "robot_description", "-model", "car"]
 
 
 def parse(*words):
-    return spawn_arguments.parser().parse_args(words)
+    return spawning.parser().parse_args(words)
 
 
 def test_defaults(monkeypatch):
@@ -75,10 +75,10 @@ def test_a_wrong_command_line_is_exit_code_2(words, capsys):
 def test_joint_positions():
     # conforms: spawn_model/-J
     options = parse(*NEEDED, "-J", "a", "1.5", "-J", "b", "-0.5")
-    assert spawn_arguments.joint_positions(options.joints) == [1.5, -0.5]
+    assert spawning.joint_positions(options.joints) == [1.5, -0.5]
     options = parse(*NEEDED, "-J", "a", "1", "-J", "b", "up")
     with pytest.raises(ValueError, match="Error: -J b up: up is not a number"):
-        spawn_arguments.joint_positions(options.joints)
+        spawning.joint_positions(options.joints)
 
 
 def load(*source):

@@ -9,7 +9,7 @@ import types
 
 import numpy as np
 import pytest
-from headless_highgui import hook, pixels, window_topic
+from headless_highgui import hook, windows
 from headless_highgui.windows import Windows, ros_label
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1] / "src"
@@ -70,13 +70,13 @@ def test_every_hooked_function_is_there():
 )
 def test_pixels_become_what_imshow_would_show(value, dtype, shown):
     image = np.full((2, 3), value, dtype)
-    assert pixels.to_8_bit(image).dtype == np.uint8
-    assert (pixels.to_8_bit(image) == shown).all()
+    assert windows.to_8_bit(image).dtype == np.uint8
+    assert (windows.to_8_bit(image) == shown).all()
 
 
 def test_8_bit_pixels_are_not_copied():
     image = np.zeros((2, 3, 3), np.uint8)
-    assert pixels.to_8_bit(image) is image
+    assert windows.to_8_bit(image) is image
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_8_bit_pixels_are_not_copied():
 )
 def test_message_says_size_step_and_encoding(shape, encoding):
     image = np.arange(np.prod(shape), dtype=np.uint8).reshape(shape)
-    msg = pixels.to_msg(image, stamp=None)
+    msg = windows.to_msg(image, stamp=None)
     assert (msg.height, msg.width, msg.encoding) == (2, 5, encoding)
     assert msg.step * msg.height == len(msg.data)
     assert msg.data == image.tobytes()
@@ -93,7 +93,7 @@ def test_message_says_size_step_and_encoding(shape, encoding):
 
 def test_a_slice_is_sent_in_rows():
     image = np.arange(60, dtype=np.uint8).reshape(4, 5, 3)[:, ::2]
-    assert pixels.to_msg(image, stamp=None).data == image.tobytes()
+    assert windows.to_msg(image, stamp=None).data == image.tobytes()
 
 
 @pytest.mark.parametrize(
@@ -122,8 +122,8 @@ def test_window_names_become_legal_ros_names():
 
 
 def test_nothing_is_converted_without_a_node(monkeypatch):
-    monkeypatch.setattr(window_topic, "to_msg", lambda *_: pytest.fail("converted"))
-    monkeypatch.setattr(window_topic, "running_rospy", lambda: None)
+    monkeypatch.setattr(windows, "to_msg", lambda *_: pytest.fail("converted"))
+    monkeypatch.setattr(windows, "running_rospy", lambda: None)
     Windows(fake_cv2()).imshow("w", np.zeros((4, 4), np.uint8))
 
 
@@ -149,9 +149,9 @@ def test_pictures_are_converted_for_subscribers_only(monkeypatch):
         ROSException=RuntimeError,
     )
     converted = []
-    monkeypatch.setattr(window_topic, "running_rospy", lambda: rospy)
-    monkeypatch.setattr(window_topic, "to_msg", lambda image, _stamp: converted.append(image))
-    window = window_topic.WindowTopic("w")
+    monkeypatch.setattr(windows, "running_rospy", lambda: rospy)
+    monkeypatch.setattr(windows, "to_msg", lambda image, _stamp: converted.append(image))
+    window = windows.WindowTopic("w")
     window.show("picture 1")
     window.show("picture 2")
     assert converted == [] and window.publisher.sent == []

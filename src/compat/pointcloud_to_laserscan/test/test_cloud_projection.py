@@ -4,8 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from pointcloud_to_laserscan.clouds import BadCloud, xyz_of
-from pointcloud_to_laserscan.projection import Settings, points_of, ranges_of, rotation
+from pointcloud_to_laserscan.projection import (
+    BadCloud,
+    Settings,
+    points_of,
+    ranges_of,
+    rotation,
+    xyz_of,
+)
 
 FIELDS = [("x", 0, 7), ("y", 4, 7), ("z", 8, 7)]
 

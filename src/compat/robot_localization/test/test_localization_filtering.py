@@ -4,7 +4,15 @@ import math
 
 import numpy as np
 import pytest
-from robot_localization.filtering.ekf import SIZE, Ekf, moved
+from robot_localization.filtering.ekf import (
+    SIZE,
+    Ekf,
+    angles_of,
+    matrix_of,
+    moved,
+    pose_matrix,
+    quaternion_of,
+)
 from robot_localization.filtering.measurements import (
     BadConfig,
     Filter,
@@ -16,12 +24,6 @@ from robot_localization.filtering.measurements import (
     turned,
     velocity_between,
     without_gravity,
-)
-from robot_localization.filtering.rotations import (
-    angles_of,
-    matrix_of,
-    pose_matrix,
-    quaternion_of,
 )
 
 ANGLES = (0.3, -0.4, 2.0)

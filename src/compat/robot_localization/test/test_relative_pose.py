@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from robot_localization.filtering.rotations import pose_matrix
+from robot_localization.filtering.ekf import pose_matrix
 from robot_localization.sources import Source
 
 

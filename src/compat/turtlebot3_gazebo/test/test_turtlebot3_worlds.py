@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from turtlebot3_gazebo.making.courses import course_2017, course_2020
 from turtlebot3_gazebo.making.everything import everything
 from turtlebot3_gazebo.making.painting import RED, WHITE, YELLOW, Canvas
+from turtlebot3_gazebo.making.race_worlds import course_2017, course_2020
 
 from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.xacro.files import expand

@@ -4,8 +4,7 @@ import random
 
 import numpy as np
 import pytest
-from turtlesim.pond.canvas import SIDE
-from turtlesim.pond.looks import LOOKS, draw_turtle
+from turtlesim.pond.canvas import LOOKS, SIDE, draw_turtle
 from turtlesim.pond.pond import BACKGROUND, Pond, PondError
 
 GREY = (90, 90, 90)

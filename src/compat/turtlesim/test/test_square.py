@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 from turtlesim.pond.canvas import Canvas
-from turtlesim.pond.turtle import TICK, Turtle
+from turtlesim.pond.pond import TICK, Turtle
 from turtlesim.square import SIDE, SPEED, STOPPED, TURN_RATE, SquareDriver
 
 LIMIT_TICKS = int(120 / TICK)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from turtlesim.pond.canvas import SIDE, Canvas
-from turtlesim.pond.turtle import TICK, Turtle
+from turtlesim.pond.pond import TICK, Turtle
 
 BACKGROUND = (69, 86, 255)
 PEN = (179, 184, 255)

@@ -1,5 +1,9 @@
-"""What spawn_model does after its command line: wait, load, spawn, set joints, unpause, delete."""
+"""spawn_model: its command line, then wait, load, spawn, set joints, unpause, delete.
 
+Flags are upstream's, with long names behind a single dash.
+"""
+
+import argparse
 import signal
 import sys
 import threading
@@ -11,11 +15,59 @@ from geometry_msgs.msg import Point, Pose, Quaternion
 from std_srvs.srv import Empty
 
 from bullet_sim.pose import quaternion_from_rpy
-from gazebo_ros import gazebo_interface, model_source, spawn_arguments
+from gazebo_ros import gazebo_interface, model_source
 from gazebo_ros.quiet_end import end_quietly
 from gazebo_ros.service_wait import wait_for_service
 
+EPILOG = "Example: spawn_model -urdf -param robot_description -model robot -z 0.1"
+SOURCES = (
+    ("-file", "FILE_NAME", "file"), ("-param", "PARAM_NAME", "ROS parameter"),
+    ("-database", "MODEL_NAME", "model of the model path"))
+SWITCHES = (
+    ("-unpause", "unpause the simulation afterwards"),
+    ("-package_to_model", "in mesh file names, write model:// for package://"),
+    ("-b", "stay, and delete the model when this node is shut down"))
 POLL_PERIOD = 0.1  # s
+
+
+def parser() -> argparse.ArgumentParser:
+    result = argparse.ArgumentParser(
+        prog="spawn_model", description="Spawn a model in the simulator.", epilog=EPILOG)
+    language = result.add_mutually_exclusive_group(required=True)
+    language.add_argument("-urdf", action="store_true", help="the XML is URDF")
+    language.add_argument("-sdf", action="store_true", help="the XML is SDF")
+    source = result.add_mutually_exclusive_group(required=True)
+    for flag, metavar, where in SOURCES:
+        source.add_argument(flag, metavar=metavar, help=f"take the XML from this {where}")
+    source.add_argument("-stdin", action="store_true", help="take the XML from standard input")
+    result.add_argument("-model", required=True, metavar="MODEL_NAME", help="the new name")
+    result.add_argument("-reference_frame", default="", metavar="NAME",
+                        help="model or model::link that the pose is seen from; default: world")
+    result.add_argument("-gazebo_namespace", default="/gazebo", metavar="NS",
+                        help="where the services are; default: /gazebo")
+    result.add_argument("-robot_namespace", default=rospy.get_namespace(), metavar="NS",
+                        help="of the model's plugins; default: this node's")
+    result.add_argument("-wait", metavar="MODEL_NAME", help="first wait until this model is there")
+    for flag, effect in SWITCHES:
+        result.add_argument(flag, action="store_true", help=effect)
+    for name in ("x", "y", "z"):
+        result.add_argument(f"-{name}", type=float, default=0.0, help=f"position {name}, m")
+    for name, angle in (("R", "roll"), ("P", "pitch"), ("Y", "yaw")):
+        result.add_argument(f"-{name}", type=float, default=0.0, help=f"{angle}, rad")
+    result.add_argument("-J", dest="joints", action="append", default=[], nargs=2,
+                        metavar=("JOINT_NAME", "POSITION"), help="initial position, rad or m")
+    return result
+
+
+def joint_positions(joints: list[list[str]]) -> list[float]:
+    """The numbers of all -J; ValueError with one clear line for a word that is none."""
+    positions = []
+    for name, word in joints:
+        try:
+            positions.append(float(word))
+        except ValueError:
+            raise ValueError(f"Error: -J {name} {word}: {word} is not a number") from None
+    return positions
 
 
 def pose_from(options) -> Pose:
@@ -109,9 +161,9 @@ def run(options, positions: list[float]) -> int:
 
 
 def main() -> int:
-    options = spawn_arguments.parser().parse_args(rospy.myargv()[1:])
+    options = parser().parse_args(rospy.myargv()[1:])
     try:
-        positions = spawn_arguments.joint_positions(options.joints)
+        positions = joint_positions(options.joints)
         end_quietly()
         rospy.init_node("spawn_model", anonymous=True)
         return run(options, positions)

@@ -1,17 +1,116 @@
-"""OpenCV's window functions under their own names, without a screen."""
+"""OpenCV's window functions under their own names, without a screen: windows are image topics."""
 
 import logging
 import re
+import sys
 import threading
 import time
 
+import numpy as np
 from terminal_language import translated
 
-from headless_highgui.pixels import why_not_shown
-from headless_highgui.window_topic import WindowTopic, running_rospy
-
+ENCODINGS = {1: "mono8", 3: "bgr8", 4: "bgra8"}
+# dtype: (factor, offset), as OpenCV's imshow documents and does it.
+SCALES = {
+    "uint8": (1, 0),
+    "int8": (1, 128),
+    "uint16": (1 / 256, 0),
+    "int16": (1 / 256, 128),
+    "float32": (255, 0),
+    "float64": (255, 0),
+}
 NO_KEY = -1
 log = logging.getLogger(__name__)
+
+
+def why_not_shown(image):
+    """Why imshow cannot show this object, in a few words; None when it can."""
+    if image is None:
+        return "there is no picture (None): was the file read, did the topic send one?"
+    if not isinstance(image, np.ndarray):
+        return f"a picture is a numpy array, not a {type(image).__name__}"
+    if image.size == 0:
+        return "the picture is empty"
+    if image.ndim not in (2, 3) or (image.ndim == 3 and image.shape[2] not in ENCODINGS):
+        return f"shape {image.shape} is neither (h, w) nor (h, w, 1), (h, w, 3), (h, w, 4)"
+    if image.dtype.name not in SCALES:
+        return f"pixels of type {image.dtype} cannot be shown; known: {', '.join(SCALES)}"
+    return None
+
+
+def to_8_bit(image):
+    """The picture as uint8, same shape; a uint8 picture is handed through."""
+    factor, offset = SCALES[image.dtype.name]
+    if image.dtype == np.uint8:
+        return image
+    scaled = np.nan_to_num(image.astype(np.float32) * factor + offset, nan=0.0)
+    return np.clip(np.rint(scaled), 0, 255).astype(np.uint8)
+
+
+def to_msg(image, stamp):
+    """The picture as sensor_msgs/Image."""
+    from sensor_msgs.msg import Image  # here: plain OpenCV scripts run without ROS
+
+    msg = Image(height=image.shape[0], width=image.shape[1])
+    msg.header.stamp = stamp
+    msg.encoding = ENCODINGS[image.shape[2] if image.ndim == 3 else 1]
+    msg.data = np.ascontiguousarray(to_8_bit(image)).tobytes()
+    msg.step = len(msg.data) // msg.height
+    return msg
+
+
+def running_rospy():
+    """The rospy module once its node is initialised, else None; never imports it itself."""
+    rospy = sys.modules.get("rospy")
+    return rospy if rospy is not None and rospy.core.is_initialized() else None
+
+
+class WindowTopic:
+    """Publishes on ~windows/<label>; converts a picture only when somebody looks."""
+
+    def __init__(self, label):
+        self.label = label
+        self.image = None  # the last one shown, not copied
+        self.publisher = None
+        # rospy serialises for all and for a new subscriber into one buffer, the latter unlocked.
+        self._sending = threading.Lock()
+
+    def show(self, image):
+        self.image = image
+        rospy = running_rospy()
+        if rospy is None or rospy.is_shutdown():
+            return
+        if self.publisher is None:
+            self._open(rospy)
+        if self.publisher.get_num_connections() > 0:
+            try:
+                with self._sending:
+                    self.publisher.publish(to_msg(image, rospy.Time.now()))
+            except rospy.ROSException:
+                log.debug("the node closed %s while it was published", self.label)
+
+    def close(self):
+        if self.publisher is not None:
+            self.publisher.unregister()
+            self.publisher = None
+
+    def peer_subscribe(self, _topic_name, _publish, publish_to_new):
+        """rospy calls this for each new subscriber: it sees the last picture at once."""
+        if self.image is not None:
+            with self._sending:
+                publish_to_new(to_msg(self.image, running_rospy().Time.now()))
+
+    def peer_unsubscribe(self, _topic_name, _remaining):
+        """Part of what rospy asks of a listener; nothing to do."""
+
+    def _open(self, rospy):
+        from sensor_msgs.msg import Image
+
+        self.publisher = rospy.Publisher(
+            f"~windows/{self.label}", Image, subscriber_listener=self, queue_size=1
+        )
+        rospy.loginfo(translated(
+            f"no screen: the window is the image topic {self.publisher.resolved_name}"))
 
 
 def ros_label(name, taken):

@@ -10,8 +10,7 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from laser_filters.filters import FILTERS
-from laser_filters.observations import Observations
-from laser_filters.scan import PointsIn, Scan, ScanFilter
+from laser_filters.scan import Observations, PointsIn, Scan, ScanFilter
 
 OVER_SCANS = {f"MultiChannel{kind}Filter{number}": kind.lower()
               for kind in ("Median", "Mean") for number in ("Float", "Double")}

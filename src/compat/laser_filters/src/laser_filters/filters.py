@@ -4,8 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from laser_filters.observations import Observations
-from laser_filters.scan import PointsIn, Scan
+from laser_filters.scan import Observations, PointsIn, Scan
 
 
 @dataclass(frozen=True)

@@ -24,14 +24,12 @@ from robot_localization.filtering.ekf import (
     SIZE,
     VELOCITY,
     Ekf,
-)
-from robot_localization.filtering.measurements import BadConfig, Filter, square
-from robot_localization.filtering.rotations import (
     angles_of,
     matrix_of,
     pose_matrix,
     quaternion_of,
 )
+from robot_localization.filtering.measurements import BadConfig, Filter, square
 from robot_localization.settings import frame, number
 from robot_localization.sources import Frames, check_stamp, open_sources
 

@@ -7,7 +7,14 @@ from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovarianceStam
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu
 
-from robot_localization.filtering.ekf import ACCELERATION, ANGLES, RATES
+from robot_localization.filtering.ekf import (
+    ACCELERATION,
+    ANGLES,
+    RATES,
+    angles_of,
+    matrix_of,
+    pose_matrix,
+)
 from robot_localization.filtering.measurements import (
     chosen,
     moved_twist,
@@ -17,7 +24,6 @@ from robot_localization.filtering.measurements import (
     velocity_between,
     without_gravity,
 )
-from robot_localization.filtering.rotations import angles_of, matrix_of, pose_matrix
 from robot_localization.settings import number
 
 KINDS = {"odom": Odometry, "imu": Imu, "pose": PoseWithCovarianceStamped,

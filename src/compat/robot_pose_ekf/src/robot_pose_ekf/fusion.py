@@ -9,8 +9,9 @@ from collections import deque
 from dataclasses import dataclass, field
 
 import numpy as np
-from robot_localization.filtering.ekf import SIZE, Ekf
-from robot_localization.filtering.rotations import (
+from robot_localization.filtering.ekf import (
+    SIZE,
+    Ekf,
     angles_of,
     matrix_of,
     pose_matrix,

@@ -10,13 +10,11 @@ import rospy
 from rosgraph.names import is_legal_name
 from std_srvs.srv import Empty, EmptyResponse
 
-from turtlesim.inbox import Inbox
 from turtlesim.parameters import declare_background, read_background
 from turtlesim.pond.canvas import SIDE
-from turtlesim.pond.pond import FIRST, Pond, PondError
-from turtlesim.pond.turtle import TICK
+from turtlesim.pond.pond import FIRST, TICK, Pond, PondError
 from turtlesim.srv import Kill, KillResponse, Spawn, SpawnResponse
-from turtlesim.turtle_interface import TurtleInterface, require_finite
+from turtlesim.turtle_interface import Inbox, TurtleInterface, require_finite
 
 FRAME_TICKS = 2  # a picture every second tick, 31 in a second
 

@@ -1,18 +1,22 @@
-"""One turtle's topics and services, NAME/cmd_vel and the others."""
+"""One turtle's topics and services, NAME/cmd_vel and the others.
+
+Work that ROS's threads leave waits for the loop, which alone touches the pond.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+import queue
+from collections.abc import Callable, Iterable
+from concurrent.futures import CancelledError, Future
+from typing import Any
 
 import numpy as np
 import rospy
 from geometry_msgs.msg import Twist
 
-from turtlesim.inbox import Inbox
 from turtlesim.msg import Color, Pose
-from turtlesim.pond.pond import Pond, PondError
-from turtlesim.pond.turtle import Turtle
+from turtlesim.pond.pond import Pond, PondError, Turtle
 from turtlesim.srv import (
     SetPen,
     SetPenResponse,
@@ -21,6 +25,46 @@ from turtlesim.srv import (
     TeleportRelative,
     TeleportRelativeResponse,
 )
+
+
+class Inbox:
+    """Everything is done in the order of arrival, once a tick."""
+
+    def __init__(self) -> None:
+        self._work: queue.SimpleQueue[tuple[Future, Callable, tuple]] = queue.SimpleQueue()
+        self._closed = False
+
+    def put(self, function: Callable, *arguments: Any) -> Future:
+        """From any thread; does not wait."""
+        answer: Future = Future()
+        self._work.put((answer, function, arguments))
+        if self._closed:
+            self.close()
+        return answer
+
+    def call(self, function: Callable, *arguments: Any) -> Any:
+        """From a service's thread: waits for the answer; ServiceException if there is none."""
+        try:
+            return self.put(function, *arguments).result()
+        except PondError as error:
+            raise rospy.ServiceException(str(error)) from error
+        except CancelledError:
+            raise rospy.ServiceException("turtlesim has ended") from None
+
+    def work(self) -> None:
+        """Do what has arrived. The loop calls this."""
+        for _ in range(self._work.qsize()):
+            answer, function, arguments = self._work.get()
+            try:
+                answer.set_result(function(*arguments))
+            except Exception as error:
+                answer.set_exception(error)
+
+    def close(self) -> None:
+        """Reject all pending requests, and those that come later."""
+        self._closed = True
+        while not self._work.empty():
+            self._work.get()[0].cancel()
 
 
 class TurtleInterface:

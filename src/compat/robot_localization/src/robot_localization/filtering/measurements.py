@@ -5,8 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from robot_localization.filtering.ekf import SIZE, Ekf
-from robot_localization.filtering.rotations import angles_of, matrix_of
+from robot_localization.filtering.ekf import SIZE, Ekf, angles_of, matrix_of
 
 LEAVES_THE_FLOOR = (2, 3, 4, 8, 9, 10, 14)  # z, roll, pitch, their rates, az: 0 in two_d_mode
 FLOOR_VARIANCE = 1e-6

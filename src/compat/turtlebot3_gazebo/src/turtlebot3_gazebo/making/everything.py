@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from turtlebot3_gazebo.making.arenas import arenas
-from turtlebot3_gazebo.making.courses import courses
-from turtlebot3_gazebo.making.house import house
-from turtlebot3_gazebo.making.props import props
-from turtlebot3_gazebo.making.race_worlds import race_worlds
+from turtlebot3_gazebo.making.arenas import arenas, house, worlds
+from turtlebot3_gazebo.making.race_worlds import courses, props, race_worlds
 from turtlebot3_gazebo.making.signs import signs
-from turtlebot3_gazebo.making.worlds import worlds
 
 
 def everything() -> dict[str, bytes]:

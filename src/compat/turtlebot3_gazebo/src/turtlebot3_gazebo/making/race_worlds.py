@@ -1,16 +1,57 @@
-"""The two AutoRace worlds, written as Gazebo saves them: poses in `<state>` win over the others."""
+"""The AutoRace courses: their floors, what missions put up and take away, and the two worlds.
+
+The worlds are written as Gazebo saves them: poses in `<state>` win over the others.
+"""
 
 from __future__ import annotations
 
 import json
 
 from turtlebot3_gazebo.making import sdf
-from turtlebot3_gazebo.making.courses import LANE_2020, WAY_2020
-from turtlebot3_gazebo.making.lanes import beside, rounded
-from turtlebot3_gazebo.making.props import BAR, BAR_HIGH, LAMPS, LIGHT, bar_posts
-from turtlebot3_gazebo.making.sdf import DARK, GREY, Numbers, Part, box, cylinder, sphere
-from turtlebot3_gazebo.making.worlds import include, world
+from turtlebot3_gazebo.making.arenas import include, world
+from turtlebot3_gazebo.making.painting import RED, YELLOW, Canvas, Painter, Point, beside, rounded
+from turtlebot3_gazebo.making.painting import WHITE as WHITE_PAINT
+from turtlebot3_gazebo.making.sdf import DARK, GREY, WHITE, Numbers, Part, box, cylinder, sphere
 
+LIGHT = (1.39, -1.57)  # m, x and y of the traffic light
+LAMPS = {  # height in m, colour
+    "red": (0.11, (1.0, 0.0, 0.0)), "green": (0.21, (0.0, 1.0, 0.0)),
+    "yellow": (0.31, (1.0, 1.0, 0.0)),
+}
+BAR = (-1.72, 0.56)  # m, x and y of the crossing
+BAR_LONG, BAR_HIGH = 0.36, 0.12  # m
+BURGER_INERTIAL = ("<inertial><pose>0 0 0.07 0 0 0</pose><mass>1</mass><inertia><ixx>0.0035</ixx>"
+                   "<iyy>0.0035</iyy><izz>0.0035</izz></inertia></inertial>")
+SIDE = 4.0  # m
+FLOOR_2017, FLOOR_2020 = (10, 10, 10), (0, 0, 0)
+# Driven in this order; the tunnel lies between the end and the start. Signs stand beside the lanes.
+WAY_2017: tuple[Point, ...] = ((0.0, -1.787), (1.787, -1.787), (1.787, 1.787), (-1.787, 1.787),
+                               (-1.787, 0.0))
+WAY_2020: tuple[Point, ...] = (
+    (0.0, -1.747), (1.747, -1.747), (1.747, -0.93), (0.35, -0.93), (0.35, -0.14), (1.62, -0.14),
+    (1.62, 1.747), (-0.45, 1.747), (-0.9, 1.25), (-1.72, 1.25), (-1.72, 0.0),
+)
+LANE_2020 = 0.3, 0.25  # m: radius of its bends, width
+COURSE_MODEL = """  <model name="course">
+    <static>true</static>
+    <link name="course_link">
+      <collision name="course_collision">
+        <geometry><plane><normal>0 0 1</normal><size>4 4</size></plane></geometry>
+        <surface><friction><ode><mu>100</mu><mu2>50</mu2></ode></friction></surface>
+      </collision>
+      <visual name="course_visual">
+        <cast_shadows>false</cast_shadows>
+        <geometry><plane><normal>0 0 1</normal><size>4 4</size></plane></geometry>
+        <material>
+          <script>
+            <uri>model://{folder}/materials/scripts</uri>
+            <uri>model://{folder}/materials/textures</uri>
+            <name>course</name>
+          </script>
+        </material>
+      </visual>
+    </link>
+  </model>"""
 SCENE = """  <scene>
     <ambient>0 0 0 1</ambient>
     <background>0.7 0.7 0.7 1</background>
@@ -57,6 +98,126 @@ SIGNS_2020 = {"traffic_parking": (0.74, 1.95, 0.13, 0, 0, -1.57),
               "traffic_construction": (1.0, 0.04, 0.125, 0, 0, -1.57),
               "traffic_intersection": (1.95, -1.0, 0.125),
               "traffic_noentry": (0.95, -0.758, 0.125), "checker": (5.5, -1.75, 0.0)}
+
+
+def lamp(colour: str) -> str:
+    """The lamp that is lit: a glowing ball round the dark one that stands in the world."""
+    height, rgb = LAMPS[colour]
+    part = Part("lamp", sphere(0.046), sdf.ORIGIN, rgb, solid=False, glows=True)
+    return sdf.model(f"traffic_light_{colour}", [sdf.link("link", [part], (*LIGHT, height))])
+
+
+def bar_down() -> str:
+    parts = [Part("red", box(BAR_LONG / 3, 0.02, 0.03), sdf.ORIGIN, (0.9, 0.1, 0.1)),
+             *(Part(name, box(BAR_LONG / 3, 0.02, 0.03), (x, 0, 0), WHITE)
+               for name, x in (("west", -BAR_LONG / 3), ("east", BAR_LONG / 3)))]
+    return sdf.model("traffic_bar_down", [sdf.link("link", parts, (*BAR, BAR_HIGH))])
+
+
+def bar_up() -> str:
+    """Upright over the eastern post."""
+    parts = [Part("red", box(0.03, 0.02, BAR_LONG / 3), sdf.ORIGIN, (0.9, 0.1, 0.1)),
+             *(Part(name, box(0.03, 0.02, BAR_LONG / 3), (0, 0, z), WHITE)
+               for name, z in (("low", -BAR_LONG / 3), ("high", BAR_LONG / 3)))]
+    place = (BAR[0] + BAR_LONG / 2 + 0.03, BAR[1], BAR_HIGH + BAR_LONG / 2)
+    return sdf.model("traffic_bar_up", [sdf.link("link", parts, place)])
+
+
+def bar_posts() -> str:
+    """The link that stands in the world all the time, its origin in the bar's middle."""
+    parts = [Part(name, box(0.03, 0.03, BAR_HIGH), (x, 0, -BAR_HIGH / 2), DARK)
+             for name, x in (("west", -BAR_LONG / 2 - 0.03), ("east", BAR_LONG / 2 + 0.03))]
+    return sdf.link("link", parts)
+
+
+def burger() -> str:
+    """A robot to be parked: its mission writes <static>1</static> over the 0."""
+    parts = [Part("body", box(0.14, 0.14, 0.13), (-0.032, 0, 0.075), DARK),
+             Part("wheel_left", cylinder(0.033, 0.018), (0, 0.08, 0.033, 1.5708, 0, 0), DARK),
+             Part("wheel_right", cylinder(0.033, 0.018), (0, -0.08, 0.033, 1.5708, 0, 0), DARK),
+             Part("laser", cylinder(0.035, 0.04), (-0.032, 0, 0.175), (0.3, 0.3, 0.3)),
+             Part("caster", sphere(0.01), (-0.081, 0, 0.01), DARK)]
+    return sdf.model("turtlebot3_burger", [sdf.link("base", parts, mass=BURGER_INERTIAL)], static=0)
+
+
+def props() -> dict[str, bytes]:
+    """Path below `models/` -> bytes."""
+    texts = {f"traffic_light_{colour}": (lamp(colour), f"The {colour} lamp, lit.")
+             for colour in LAMPS}
+    texts |= {"traffic_bar_down": (bar_down(), "The crossing's bar, closed."),
+              "traffic_bar_up": (bar_up(), "The crossing's bar, open."),
+              "turtlebot3_burger": (burger(), "A burger to be parked.")}
+    files: dict[str, bytes] = {}
+    for folder in ("turtlebot3_autorace", "turtlebot3_autorace_2020"):
+        for name, (text, description) in texts.items():
+            files |= sdf.model_files(f"{folder}/{name}", text, description)
+    return files
+
+
+def bay(painter: Painter, left: float, low: float, right: float, high: float, open_at: str) -> None:
+    """A parking bay of white lines, one of its sides broken."""
+    corners = {"west": ((left, low), (left, high)), "east": ((right, low), (right, high)),
+               "south": ((left, low), (right, low)), "north": ((left, high), (right, high))}
+    for side, ends in corners.items():
+        if side == open_at:
+            painter.dashes(*ends, WHITE_PAINT)
+        else:
+            painter.line(ends, WHITE_PAINT)
+
+
+def course_2017() -> Canvas:
+    """One lane round the square; parking inside of the east side, a stop line before the bar."""
+    canvas = Canvas(2048, SIDE, FLOOR_2017)
+    painter = Painter(canvas, yaw=-1.54, line_width=0.018)
+    painter.lane(WAY_2017, radius=0.4, width=0.296)
+    painter.area([(1.62, 0.75), (1.66, 0.75), (1.66, 1.05), (1.62, 1.05)], FLOOR_2017)  # a gap
+    painter.dashes((1.639, 0.75), (1.639, 1.05), YELLOW)
+    bay(painter, 1.1, 0.45, 1.5, 0.8, "north")
+    bay(painter, 1.1, 1.0, 1.5, 1.35, "south")
+    painter.line([(-1.92, 0.7), (-1.66, 0.7)], WHITE_PAINT, 0.03)
+    return canvas
+
+
+def course_2020() -> Canvas:
+    """A lane with an intersection, a building site, parking, a crossing; it ends at the tunnel."""
+    canvas = Canvas(1024, SIDE, FLOOR_2020)
+    painter = Painter(canvas, yaw=-3.14, line_width=0.02)
+    painter.lane(WAY_2020, *LANE_2020)
+    painter.line([(0.95, -1.86), (0.95, -1.63)], RED, 0.035)  # the start
+    short_cut(painter)
+    parking(painter)
+    painter.line([(-1.83, 0.68), (-1.61, 0.68)], WHITE_PAINT, 0.03)
+    return canvas
+
+
+def short_cut(painter: Painter) -> None:
+    """The way over the intersection that a sign forbids: from lane to lane at x = 1.05."""
+    for y in (-0.805, -0.265):  # mouths in the lines of both lanes
+        painter.area([(0.94, y - 0.03), (1.16, y - 0.03), (1.16, y + 0.03), (0.94, y + 0.03)],
+                     FLOOR_2020)
+    painter.line([(0.925, -0.805), (0.925, -0.265)], YELLOW)
+    painter.line([(1.175, -0.805), (1.175, -0.265)], WHITE_PAINT)
+
+
+def parking(painter: Painter) -> None:
+    """Two bays, left and right of a way that leaves the northern lane at x = 0.48."""
+    painter.area([(0.37, 1.59), (0.59, 1.59), (0.59, 1.65), (0.37, 1.65)], FLOOR_2020)
+    painter.dashes((0.355, 1.6), (0.355, 1.0), WHITE_PAINT)
+    painter.dashes((0.605, 1.6), (0.605, 1.0), WHITE_PAINT)
+    painter.line([(0.355, 0.6), (0.605, 0.6)], WHITE_PAINT)
+    bay(painter, 0.605, 0.6, 0.905, 1.0, "west")
+    bay(painter, 0.055, 0.6, 0.355, 1.0, "east")
+
+
+def courses() -> dict[str, bytes]:
+    """Path below `models/` -> bytes."""
+    files: dict[str, bytes] = {}
+    for folder, canvas in (("turtlebot3_autorace/autorace_course", course_2017()),
+                           ("turtlebot3_autorace_2020/course", course_2020())):
+        files |= sdf.model_files(folder, COURSE_MODEL.format(folder=folder),
+                                 "A black floor of 4 x 4 m with the lanes of a race.")
+        files |= sdf.material_files(folder, "course", canvas.png())
+    return files
 
 
 def tunnel(name: str) -> str:
