@@ -26,7 +26,7 @@ LANGUAGE = "zh_CN"
 # Programs for those who work on this repository, which print English.
 INSTRUMENTS = re.compile(
     r"src/sim_bench/|src/compat/terminal_language/|src/trial_worlds/"
-    r"|src/.*/(training|making|test)/"
+    r"|src/.*/(training|test)/"
     r"|src/.*/(setup|conftest|(make|draw|train)_\w+)\.py|src/sim/bullet_sim/examples/"
     r"|src/driving_courses/examples/|src/evaluation/src/evaluation/(autorace|avoid|\w+_trials)\.py")
 # Parts of the page's server, whose texts only the page shows.

@@ -14,7 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 MAKERS = ("course", "gazebo_worlds", "lane_world", "racecar_meshes", "racetrack",
-          "turtlebot3_meshes", "urdf_lesson_mesh")
+          "turtlebot3_meshes", "turtlebot3_worlds", "urdf_lesson_mesh")
 
 
 def main() -> int:

@@ -3,6 +3,4 @@
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 
-setup(**generate_distutils_setup(
-    packages=["turtlebot3_gazebo", "turtlebot3_gazebo.making"], package_dir={"": "src"},
-))
+setup(**generate_distutils_setup(packages=["turtlebot3_gazebo"], package_dir={"": "src"}))

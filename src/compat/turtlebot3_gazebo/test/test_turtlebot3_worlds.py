@@ -2,14 +2,12 @@
 
 import math
 import re
+import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-from turtlebot3_gazebo.making.everything import everything
-from turtlebot3_gazebo.making.painting import RED, WHITE, YELLOW, Canvas
-from turtlebot3_gazebo.making.race_worlds import course_2017, course_2020
 
 from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.xacro.files import expand
@@ -18,8 +16,13 @@ from bullet_sim.world import World
 from bullet_sim_ros.package_paths import open_resources
 
 PACKAGE = Path(__file__).resolve().parent.parent
+ROOT = PACKAGE.parents[2]
+sys.path.append(str(ROOT / "tools/makers"))
+import turtlebot3_worlds  # noqa: E402
+from painting import RED, WHITE, YELLOW, Canvas  # noqa: E402
+from turtlebot3_race import course_2017, course_2020  # noqa: E402
+
 URDF = PACKAGE.parent / "turtlebot3_description" / "urdf"
-FILES = everything()
 STARTS = {  # world: robot, x, y
     "turtlebot3_house": ("waffle", -3.0, 1.0),
     "turtlebot3_stage_1": ("burger", 0.0, 0.0),
@@ -55,13 +58,12 @@ def open_world(resources):
         world.close()
 
 
-def test_what_is_shipped_is_what_is_made():
-    shipped = {str(path.relative_to(PACKAGE)): path.read_bytes()
+def test_each_shipped_file_is_one_that_is_made():
+    shipped = {str(path.relative_to(ROOT))
                for folder in ("models", "worlds") for path in (PACKAGE / folder).rglob("*")
                if path.is_file() and path.parent.name != "turtlebot3_world"
-               and "turtlebot3_autorace/course" not in str(path)}  # learning_topic's test has it
-    assert shipped.keys() == FILES.keys()
-    assert [path for path in FILES if shipped[path] != FILES[path]] == []
+               and "turtlebot3_autorace/course" not in str(path)}  # learning_topic's course
+    assert shipped == turtlebot3_worlds.files().keys()
 
 
 @pytest.mark.parametrize("folder", PUT_IN)
@@ -144,7 +146,7 @@ def test_painted_lines_have_their_width_and_areas_their_edges():
 
 
 def test_the_house_has_room_where_robots_start():
-    text = FILES["models/turtlebot3_house/model.sdf"].decode()
+    text = (PACKAGE / "models/turtlebot3_house/model.sdf").read_text(encoding="utf-8")
     boxes = re.findall(r"<collision name=\"\w+\"><pose>(\S+) (\S+) .*?<size>(\S+) (\S+) ", text)
     for x, y in ((-3.0, 1.0), (-7.0, -1.0), (7.0, -1.0), (0.5, 3.0)):
         for middle_x, middle_y, long, wide in (map(float, each) for each in boxes):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from turtlebot3_gazebo.making import sdf
-from turtlebot3_gazebo.making.sdf import DARK, GREY, WHITE, Part, box, cylinder
+import sdf
+from sdf import DARK, GREY, WHITE, Part, box, cylinder
 
 THICK, HIGH = 0.15, 0.5  # m, of every wall
 PLAZA_WALLS = (  # x, y of the middle, yaw; each 1 m long

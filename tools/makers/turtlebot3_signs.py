@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from turtlebot3_gazebo.making import sdf
-from turtlebot3_gazebo.making.painting import (
+import sdf
+from painting import (
     BLACK,
     BLUE,
     RED,
@@ -15,7 +15,7 @@ from turtlebot3_gazebo.making.painting import (
     Canvas,
     Point,
 )
-from turtlebot3_gazebo.making.sdf import DARK, Part, box, cylinder
+from sdf import DARK, Part, box, cylinder
 
 SIDE_PX = 128
 BOARD, BOARD_THICK = 0.11, 0.004  # m

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import json
 
-from turtlebot3_gazebo.making import sdf
-from turtlebot3_gazebo.making.arenas import include, world
-from turtlebot3_gazebo.making.painting import RED, YELLOW, Canvas, Painter, Point, beside, rounded
-from turtlebot3_gazebo.making.painting import WHITE as WHITE_PAINT
-from turtlebot3_gazebo.making.sdf import DARK, GREY, WHITE, Numbers, Part, box, cylinder, sphere
+import sdf
+from painting import RED, YELLOW, Canvas, Painter, Point, beside, rounded
+from painting import WHITE as WHITE_PAINT
+from sdf import DARK, GREY, WHITE, Numbers, Part, box, cylinder, sphere
+from turtlebot3_arenas import include, world
 
 LIGHT = (1.39, -1.57)  # m, x and y of the traffic light
 LAMPS = {  # height in m, colour

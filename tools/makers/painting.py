@@ -7,13 +7,12 @@ lane is a polygon with rounded corners, with a yellow line left and a white one 
 from __future__ import annotations
 
 import math
-import struct
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from racecar_description.track.course_model import encode_png
 
 Point = tuple[float, float]
 Colour = tuple[int, int, int]  # RGB
@@ -50,16 +49,8 @@ class Canvas:
         self._lay(columns, rows, np.where(inside, edge, -edge), colour)
 
     def png(self) -> bytes:
-        """Written here, because image libraries differ in their bytes."""
-        height, width, _ = self.pixels.shape
-        above = np.vstack([np.zeros((1, width, 3), np.uint8), self.pixels[:-1]])
-        rows = np.full((height, 1 + width * 3), 2, np.uint8)  # 2: each byte minus the one above
-        rows[:, 1:] = (self.pixels - above).reshape(height, width * 3)
-        header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-        chunks = ((b"IHDR", header), (b"IDAT", zlib.compress(rows.tobytes(), 9)), (b"IEND", b""))
-        return b"\x89PNG\r\n\x1a\n" + b"".join(
-            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-            for kind, data in chunks)
+        """The picture's file."""
+        return encode_png(self.pixels)
 
     def _around(self, points: Sequence[Point], reach: float):
         """Columns and rows (top first) that shapes so near to the points touch; their x and y."""

@@ -1,1 +1,0 @@
-"""Makes this package's worlds, models and textures: the same numbers, the same bytes."""
