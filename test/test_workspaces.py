@@ -28,7 +28,8 @@ BUILDS = {
 }
 KINDS = {"catkin_make": ("shapes", "tutorial_a"), "catkin build": ("shapes",)}
 # Their C++ takes long to compile, and the tool makes no difference to it: catkin_make's alone.
-SLOW = ("shape_diagnostics", "shape_nodelet", "shape_plugins", "shape_reconfigure", "shape_tf")
+SLOW = ("shape_all", "shape_cpp", "shape_diagnostics", "shape_nodelet", "shape_plugins",
+        "shape_reconfigure", "shape_tests", "shape_tf")
 LEFT_OUT = {
     "shape_controller": ["includes <controller_interface/controller.h>, and the C++ API of "
                          "ros_control is not here"],
