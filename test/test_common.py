@@ -187,3 +187,24 @@ def test_without_an_answer_about_masters_nothing_starts(tmp_path: Path) -> None:
                           env=os.environ | {"ROS_MASTER_URI": ""}, text=True, capture_output=True,
                           check=True)
     assert done.stdout == ""
+
+
+@pytest.mark.parametrize("link", sorted(
+    path.name for path in (ROOT / "scripts").iterdir() if path.is_symlink()))
+def test_each_link_to_run_starts_its_program_after_setup(tmp_path: Path, link: str) -> None:
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "devel").mkdir()
+    (tmp_path / "devel/setup.bash").write_text(f"export PATH={tmp_path}/bin:$PATH\n")
+    (tmp_path / "scripts").mkdir()
+    for name, text in (("bin/python3", 'echo "$@"'), ("scripts/setup.sh", 'echo setup "$@"')):
+        (tmp_path / name).write_text(f"#!/bin/sh\n{text}\n")
+        (tmp_path / name).chmod(0o755)
+    for name in ("common.sh", "run.sh", link):
+        shutil.copy(ROOT / "scripts" / name, tmp_path / "scripts", follow_symlinks=False)
+    done = subprocess.run([tmp_path / "scripts" / link, "--seed", "1"], text=True,
+                          capture_output=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    setup, started = done.stdout.splitlines()
+    program, options = started.split(" ", 1)
+    assert setup.startswith("setup") and options == "--seed 1"
+    assert (ROOT / Path(program).relative_to(tmp_path)).is_file()

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# Sets up what is missing, then runs the program whose name this script is called by: each NAME.sh that is a link to it,
+# for make NAME. `scripts/NAME.sh --help` lists its options; what it makes is in out/NAME/. NAME.sh and its exit code 0:
+#
+#   course               drives the line course (--fast: in lockstep with the follower): all laps were completed
+#   navigate             maps a house and drives to goals: all reached without contact, map and pose within their limits
+#   track                follows the red cylinder: it was reached and its distance kept
+#   avoid                drives by laser through halls with columns: all goals reached without contact
+#   autorace             drives the missions of AutoRace 2020: each passed in every drive
+#   race_trials          many laps of the racecar, each with its own light: those of the first follower within the limits
+#   track_trials         many runs after the red cylinder: enough of each set succeeded
+#   lane_trials          laps of the lane in varying light, then people crossing: all results within the limits
+#   navigation_trials    move_base in narrow yards and among people: 95 % of the yards crossed and nobody touched
+#   localisation_trials  amcl: global localisation, kidnapped robot, tracking: all results within the limits
+#   bench_lanes, bench   compares the lane detection methods; benchmarks: all was measured, whatever the results
+#   fuzz, chaos, soak    malformed input; faults during drives; hours of activity: no fault found, nothing grows
+#   mutants              mutation testing of the core: at least 85 % of the mutants are detected
+#
+# Exit code 1: it was not so; 2: it could not run. (make ends with 2 for both, and prints the code: "Error 1".)
+failure_code=2
+. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+case $self in
+  fuzz | chaos | soak | mutants) "$root/scripts/setup.sh" --tests || exit 2; program=test/$self/$self.py ;;
+  bench) "$root/scripts/setup.sh" --learning || exit 2; program=src/sim_bench/scripts/bench.py ;;
+  run) fail "call it by the name of one of the links to it, such as scripts/course.sh" ;;
+  *) set_up_trial "$@"; program=src/evaluation/scripts/${self/%course/course_run}.py ;;
+esac
+enter_workspace
+exec python3 "$root/$program" "$@"
