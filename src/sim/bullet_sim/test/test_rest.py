@@ -21,7 +21,8 @@ class Watched:
         self.rest = AutoDisable()
         self.rest.set_step(STEP)
         self.rest.bodies.append(SimpleNamespace(
-            speeds=lambda: self.seen, wants_to_move=lambda: motor))
+            speeds=lambda: self.seen,
+            joints=SimpleNamespace(wants_to_move=lambda: motor)))
 
     def samples(self, *seen: tuple[float, float]) -> bool:
         """Whether nothing needs to be solved after these."""
