@@ -28,7 +28,7 @@ INSTRUMENTS = re.compile(
     r"src/sim_bench/|src/compat/terminal_language/|src/trial_worlds/"
     r"|src/.*/(training|test)/"
     r"|src/.*/(setup|conftest|(make|draw|train)_\w+)\.py|src/sim/bullet_sim/examples/"
-    r"|src/driving_courses/examples/|src/evaluation/src/evaluation/(autorace|avoid|\w+_trials)\.py")
+    r"|src/driving_courses/examples/|src/evaluation/src/evaluation/\w+_trials\.py")
 # Parts of the page's server, whose texts only the page shows.
 PAGE = re.compile(
     r"src/sim/sim_viewer/src/sim_viewer/"

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 from pathlib import Path
 
@@ -65,7 +66,7 @@ def test_the_encoder_loads_before_the_first_picture_comes(tmp_path, monkeypatch)
 def test_an_encoder_that_cannot_begin_is_no_end_of_the_drive(tmp_path, monkeypatch):
     monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: None)
     film = new_film(tmp_path / "nowhere" / "run.mp4")
-    monkeypatch.setattr(film.tempfile, "TemporaryFile", no_room)
+    monkeypatch.setattr(tempfile, "TemporaryFile", no_room)
     film.start()
     assert film.close() == ""
 

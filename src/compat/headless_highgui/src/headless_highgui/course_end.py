@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 SEEN = ("sensor_msgs/Image", "sensor_msgs/CompressedImage", "sensor_msgs/LaserScan")  # by drivers
 WATCHES_ITSELF = "nav_nodes"  # a program that has loaded this module says which topic is silent
 SIMULATOR = "gazebo"  # node name, in any namespace
-GRACE = 2.0  # s, wall: a node that ends together with its simulator says nothing
+GRACE = 5.0  # s, wall: a node that ends together with its simulator says nothing
 ANSWER_TIME = 1.0  # s, wall
 AGAIN = ("The simulator has ended: no more messages on %s. When the course is started again, this "
          "program goes on by itself.")
