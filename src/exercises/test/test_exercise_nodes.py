@@ -11,7 +11,7 @@ from exercises.catalogue import find_exercises
 
 pytestmark = pytest.mark.processes
 LESSON = rospkg.RosPack().get_path("learning_service")
-TYPED = ["rosrun", "evaluation", "check_exercise"]
+TYPED = ["rosrun", "exercises", "check_exercise"]
 SCRIPT = [sys.executable, str(Path(__file__).resolve().parents[1] / "scripts/check_exercise")]
 
 
