@@ -56,6 +56,7 @@ OF_SHELL = (
     "rosed: {0} has no screen here, nor is another editor; type: sudo apt-get install nano",
     "{0} {1} is in C++ and not built yet; type: make -C {2} build CPP=1")
 ABSENT = "src/workspace_needs/data/absent.yaml"
+CHECK = "src/workspace_needs/src/workspace_needs/check/findings.py"
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works")  # its words
 
 
@@ -145,7 +146,7 @@ def python_texts() -> dict[str, list[str]]:
     """Each text that a program prints, and the files that it is in."""
     found: dict[str, list[str]] = {text: ["Python's argparse"] for text in OF_ARGPARSE}
     found |= {text: ["the system"] for text in OF_SYSTEM}
-    found |= {text: ["bullet_sim_ros/check/findings.py"] for text in OF_CHECK}
+    found |= {text: [CHECK] for text in OF_CHECK}
     found |= {text: ["rosed-and-rosrun"] for text in OF_SHELL}
     found |= {text: [ABSENT] for text in absences()}
     listed = subprocess.run(
