@@ -5,8 +5,6 @@ The topic is for machines without a screen.
 
 from __future__ import annotations
 
-import tkinter
-
 import numpy as np
 import rospy
 from sensor_msgs.msg import Image
@@ -51,6 +49,10 @@ class Window:
     wanted = True
 
     def __init__(self) -> None:
+        try:
+            import tkinter  # here: machines without a screen may lack it
+        except ImportError as error:
+            raise NoScreen(f"{error}; type: sudo apt-get install python3-tk") from error
         try:
             self._root = tkinter.Tk(className="turtlesim")
         except tkinter.TclError as error:
