@@ -196,7 +196,7 @@ def main() -> None:
         signal.signal(number, stop)
     rospy.init_node("teleop_twist_keyboard", disable_signals=True)
     drive = KeyedSpeeds(read_number("speed", 0.5), read_number("turn", 1.0),
-                  read_number("speed_limit", 1000.0), read_number("turn_limit", 1000.0))
+                        read_number("speed_limit", 1000.0), read_number("turn_limit", 1000.0))
     topic = CommandTopic()
     terminal = sys.stdin.fileno()
     try:

@@ -24,7 +24,7 @@ def source(monkeypatch):
     """`taken` has the maps that it gave on, `lines` what was said, last of all what is missing."""
     lines, taken = [], []
     missing_data = SimpleNamespace(missing=lambda *words: lines.append(words),
-                                 present=lambda what: lines.append(f"{what} is there"))
+                                   present=lambda what: lines.append(f"{what} is there"))
     found = MapSource(lambda message: taken.append(grid_in(message, "map")), missing_data)
     found.lines, found.taken = lines, taken
     monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: SimpleNamespace(resolved_name="/map"))

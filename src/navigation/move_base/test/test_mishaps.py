@@ -153,7 +153,7 @@ def _watched(odometry, ages, said=None, fault="", timeout=0.6):
                            odometry_fault=fault)
     said = {} if said is None else said
     missing_data = SimpleNamespace(missing=lambda what, why, **_: said.update({what: why}),
-                                 present=lambda what: said.pop(what, None))
+                                   present=lambda what: said.pop(what, None))
     return Watch((costmap, costmap), base, None, missing_data).can_drive(1.0, timeout, False)
 
 

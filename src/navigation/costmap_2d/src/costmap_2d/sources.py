@@ -95,8 +95,8 @@ class Source:
         all_is_well = waiting and waiting[-1] is self._newest and not self._fault
         now = rospy.Time.now()
         return MessageAge(self._what, self._usable, (now - self._heard_at).to_sec(),
-                    (now - self._placed_at).to_sec(),
-                    "" if all_is_well else self._why_useless(waiting))
+                          (now - self._placed_at).to_sec(),
+                          "" if all_is_well else self._why_useless(waiting))
 
     def collect(self) -> list[Observation]:
         """The observations that count now."""
@@ -157,7 +157,7 @@ class Source:
         rate = self.settings["expected_update_rate"]
         why = why_silent(subscriber, self.settings["topic"])
         self._missing_data.missing(self._what, f"expected every {rate:g} s; {why}" if rate else why,
-                                 patience=rate or SILENCE)
+                                   patience=rate or SILENCE)
 
     def _place_newest(self, waiting: list[_Arrival]) -> _Arrival | None:
         for n in range(len(waiting) - 1, -1, -1):

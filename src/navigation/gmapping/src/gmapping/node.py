@@ -46,7 +46,7 @@ class SlamNode:
         self._missing_data = MissingData()
         watch_clock(self._missing_data)
         self._transforms = Transforms(self._missing_data, (self._frames["odom_frame"],
-                                                         self._frames["base_frame"]))
+                                                           self._frames["base_frame"]))
         self._mounts = Mounts(self._frames["base_frame"], self._transforms, self._missing_data)
         self._map: OccupancyGrid | None = None
         self._map_to_odom = np.zeros(3)

@@ -121,6 +121,6 @@ class Watch:
     def _say(self, what: str, missing: bool, why: str = "", is_result: bool = False) -> None:
         if missing:
             self._missing_data.missing(what, f"{why}; {STANDS}" if why else STANDS,
-                                     is_result=is_result)
+                                       is_result=is_result)
         else:
             self._missing_data.present(what)

@@ -90,7 +90,7 @@ class Transforms:
             self._missing_data.present(other)
         is_localisation = len(self.chain) > 2 and link.parent == self.chain[0]
         self._missing_data.missing(what, why, patience, is_result=is_localisation
-                                 and link.newest is not None)
+                                   and link.newest is not None)
 
     def _trust(self, parent: str, child: str) -> None:
         if (parent, child) not in self._blamed:

@@ -1,4 +1,7 @@
-"""A model inside another: the part of it whose links are named `nested::link`."""
+"""Scoped names, `model::link`, and models inside others, whose links are named `nested::link`.
+
+A model's own name may contain `::`, so a name alone does not tell where the model's ends.
+"""
 
 from collections.abc import Iterable, Iterator, Mapping
 
@@ -9,6 +12,7 @@ from bullet_sim.model import Model
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.twist import STILL, Twist, shifted_twist
 
+SCOPE = "::"
 INERTIAL_FRAMES = ("", "world", "map", "/map")  # other names of the world's frame
 
 
@@ -60,9 +64,6 @@ def carried_lights(model: Model) -> list[str]:
     """Names in the world of all lights on a model."""
     return [light_name(link, light) for link in model.links.values()
             for light in link.description.lights]
-
-
-SCOPE = "::"
 
 
 class NestedModel:

@@ -11,7 +11,10 @@ CATCH_UP = 1.25  # lost time is made up for at this many times the wanted speed,
 
 
 class Pacer:
-    """Simulated time runs at `factor` times real time or slower, and evenly; 0 never waits."""
+    """Simulated time runs at `factor` times real time or slower, and evenly; 0 never waits.
+
+    Only here does the wall clock decide.
+    """
 
     def __init__(self, factor: float = 1.0, clock: Callable[[], float] = time.monotonic):
         self.factor = factor

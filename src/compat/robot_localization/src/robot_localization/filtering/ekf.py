@@ -1,5 +1,10 @@
 """An extended Kalman filter over a body's pose, velocity and acceleration.
 
+The state is x y z (m), roll pitch yaw (rad), all in the world's frame; then vx vy vz (m/s), rates
+about the body's x y z (rad/s) and ax ay az (m/s2), in the body's. The law of motion is that of a
+body with constant acceleration and constant rates, as in T. Moore, D. Stouch, "A Generalized
+Extended Kalman Filter Implementation for the Robot Operating System" (2014).
+
 Rotations: quaternions (x, y, z, w), matrices (3, 3) and roll, pitch, yaw (fixed axes x, y, z; rad).
 """
 

@@ -28,6 +28,9 @@ UNUSED = "UNUSED"  # a meaning that pycollada does not know
 def without_dangling(root: Any) -> list[str]:
     """Change a document, lxml's root element, so that all its references lead somewhere.
 
+    pycollada leaves out the geometry as well where one does not; Gazebo draws it, without texture
+    or material.
+
     Returns what was missing that would be seen, such as `material 'red'`, each once.
     """
     missing: dict[str, None] = {}

@@ -17,6 +17,10 @@ COARSEST = 4  # cells along the longest side
 def cluster(vertices: np.ndarray, faces: np.ndarray, limit: int) -> tuple[np.ndarray, np.ndarray]:
     """At most `limit` triangles if the shape allows it, as the corners kept and new faces.
 
+    Vertex clustering (Rossignac and Borrel, 1993): all corners in one cell of a grid become one.
+    One pass over arrays, so a million triangles take a fraction of a second; no corner moves
+    farther than the diagonal of its cell.
+
     `vertices` (n, 3) m and `faces` (m, 3). Returns indices (k,) into `vertices`, and faces (j, 3)
     uint32 into those k corners, without triangles that have become lines or points.
     """

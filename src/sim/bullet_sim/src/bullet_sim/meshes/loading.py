@@ -24,7 +24,12 @@ LARGEST_PART = 200_000_000  # bytes
 
 
 def read_scene(path: Path, split: bool) -> list[NamedPart]:
-    """One part per geometry, placed as in the scene, and named after its node."""
+    """A .ply, .off, .glb or .gltf file: a part per geometry, placed as in the scene, named after
+    its node, with a colour and an image.
+
+    Gazebo Classic reads none of them; models written for newer tools use them. The coordinates
+    stay: no axis is rotated, and glTF's are metres.
+    """
     import trimesh
     from trimesh.resolvers import FilePathResolver
 

@@ -1,4 +1,10 @@
-"""What a camera sees by: its view and projection, and the frame that is drawn."""
+"""What a camera sees by: its view and projection, and the frame that is drawn.
+
+The optical axis meets the image at its centre: (width / 2, height / 2) if pixel edges are
+integers, so pixel index ((width - 1) / 2, (height - 1) / 2). A point at (x, y, z) of the
+camera frame (x forward, y left, z up) is at column (width - 1) / 2 - f y / x and at row
+(height - 1) / 2 - f z / x, with f the focal length in pixels.
+"""
 
 import math
 from collections.abc import Iterator

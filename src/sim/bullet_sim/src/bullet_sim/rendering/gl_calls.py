@@ -43,6 +43,9 @@ def _read(into: np.ndarray, components: int, kind: int) -> None:
     _GL.glReadPixels(0, 0, width, height, components, kind, into.ctypes.data)
 
 
+# The C library takes blocks of some MB from its heap, if the environment says so, because that is
+# fast for short-lived data (see the environment hook of bullet_sim_ros). But freed blocks of
+# longer-lived data leave holes there, into which the next ones do not always fit, so memory varies.
 VARIABLE = "MALLOC_MMAP_THRESHOLD_"  # bytes, from which on blocks are not in the heap
 M_MMAP_THRESHOLD = -3  # mallopt's name of the same, in the GNU library's malloc.h
 LARGE = 1 << 20  # bytes

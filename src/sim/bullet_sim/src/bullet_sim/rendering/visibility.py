@@ -1,4 +1,8 @@
-"""Finds the parts of a scene that may be in the image, and the order in which to draw them."""
+"""Finds the parts of a scene that may be in the image, and the order in which to draw them.
+
+Rectangles of an image are (2, 2): x y of two corners, -1..1 from side to side. If the first corner
+is not below the second in both, it is empty.
+"""
 
 from __future__ import annotations
 

@@ -11,7 +11,12 @@ _OUTSIDE = -2.0  # px; a position that shows nothing
 
 
 class Distortion:
-    """The `<distortion>` of one camera's images."""
+    """The `<distortion>` of one camera's images: Brown's model, as in OpenCV and camera_info.
+
+    With x, y the pinhole's coordinates over the focal length and r^2 = x^2 + y^2, a point is seen
+    at x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), and y likewise with p1, p2
+    swapped.
+    """
 
     def __init__(self, camera: CameraDescription, focal_length_px: float, crop: bool):
         """With `crop` a barrel image (k1 < 0) is enlarged until its black border is gone.

@@ -89,7 +89,7 @@ class DepthCameraPlugin:
 
 def _capture_at_rate(context: PluginContext, cameras: list[CameraTopics]) -> None:
     CameraStream(context, cameras).capture_at_rate(context.sensor.update_rate,
-                                                  cameras[0].settings.rate_hz)
+                                                   cameras[0].settings.rate_hz)
 
 
 def _capture_depth(context: PluginContext, far: float) -> None:
@@ -107,7 +107,7 @@ def _pair(context: PluginContext) -> list[CameraTopics]:
             cameras.append(CameraTopics(context, number, "/left", 0.0))
         elif "right" in camera.name:
             cameras.append(CameraTopics(context, number, "/right",
-                                           context.parameters.number("hackBaseline", 0.0)))
+                                        context.parameters.number("hackBaseline", 0.0)))
         else:
             log.warning("%s: camera %r is left out: its name has neither left nor right in it",
                         context.describe(), camera.name)

@@ -1,4 +1,4 @@
-"""libgazebo_ros_imu.so and libgazebo_ros_imu_sensor.so."""
+"""libgazebo_ros_imu.so, of a link and without gravity, and libgazebo_ros_imu_sensor.so, with it."""
 
 import numpy as np
 from sensor_msgs.msg import Imu as ImuMsg

@@ -21,6 +21,9 @@ RobotLinks = dict[str, tuple[Pose, tuple[Visual, ...]]]
 def read_robot_visuals(text: str, resources: Resources) -> tuple[str, RobotLinks]:
     """The robot's name, and its links with their poses at joints zero, relative to the root.
 
+    By URDF's own rules: a simulator drops links without mass and lumps others (lumping.py); to draw
+    a robot by its transforms, as rviz does, each link is needed.
+
     A visual that cannot be read is left out with one warning. FormatError for a text that is not
     URDF.
     """
