@@ -35,6 +35,13 @@ def test_what_is_no_model_is_one_line(tmp_path, text, reason):
     assert done.stderr.startswith("gz sdf: ") and reason in done.stderr
 
 
+@pytest.mark.parametrize("steps", ["0", "-1", "two"])
+def test_what_is_no_number_of_steps_is_named(steps):
+    done = gz("world", "-m", steps)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"{steps} is not a number of steps, 1 or more" in done.stderr
+
+
 @pytest.mark.parametrize("command", ["camera", "debug", "joint", "log", "marker", "physics",
                                      "stats"])
 def test_other_commands_name_what_does_it_here(command):

@@ -25,7 +25,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf.writing import VERSION, sdf_text
-from bullet_sim.formats.xml_text import parse_xml, read_xml_file
+from bullet_sim.formats.xml_text import decoded, parse_xml, read_xml_file
 from bullet_sim.pose import quaternion_from_rpy, rpy_from_quaternion
 
 ELSEWHERE = {
@@ -40,6 +40,7 @@ ELSEWHERE = {
 NOT_RUNNING = ("An instance of Gazebo is not running on this master. Start one, as with: "
                "roslaunch gazebo_ros empty_world.launch")
 ROSTOPIC = ("info", "echo", "hz", "bw")
+ONE_WORLD = "accepted; there is only one world"
 PLACE = ("x", "y", "z", "R", "P", "Y")  # m, and rad about fixed axes
 
 
@@ -63,16 +64,16 @@ def parser() -> argparse.ArgumentParser:
     model.add_argument("-d", "--delete", action="store_true")
     model.add_argument("-f", "--spawn-file", metavar="FILE", help="URDF or SDF")
     model.add_argument("-s", "--spawn-string", action="store_true", help="SDF from a pipe")
-    model.add_argument("-w", "--world-name", metavar="NAME", help="here is one world alone")
+    model.add_argument("-w", "--world-name", metavar="NAME", help=ONE_WORLD)
     model.add_argument("-i", "--info", action="store_true", help="its links and joints")
     model.add_argument("-p", "--pose", action="store_true", help="print x y z R P Y")
     for name in PLACE:
         model.add_argument(f"-{name}", f"--pose-{name}", dest=f"to_{name}", type=float, metavar="N")
 
     world = commands.add_parser("world", help="pause or reset")
-    world.add_argument("-w", "--world-name", metavar="NAME", help="here is one world alone")
+    world.add_argument("-w", "--world-name", metavar="NAME", help=ONE_WORLD)
     world.add_argument("-s", "--step", action="store_true", help="one step of a paused world")
-    world.add_argument("-m", "--multi-step", type=int, metavar="N", help="N of them")
+    world.add_argument("-m", "--multi-step", type=_steps, metavar="N", help="N of them")
     world.add_argument("-p", "--pause", type=int, choices=(0, 1), help="1: pause, 0: go on")
     world.add_argument("-r", "--reset-all", action="store_true", help="time and models")
     world.add_argument("-o", "--reset-models", action="store_true")
@@ -83,6 +84,13 @@ def parser() -> argparse.ArgumentParser:
     for letter, name in zip("iezb", ROSTOPIC):
         of_topic.add_argument(f"-{letter}", f"--{name}", metavar="TOPIC")
     return result
+
+
+def _steps(text: str) -> int:
+    """A number of steps, for argparse."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text} is not a number of steps, 1 or more")
+    return int(text)
 
 
 def run_sdf(options: argparse.Namespace) -> None:
@@ -145,7 +153,7 @@ def _become_spawn_model(options: argparse.Namespace, *words: str) -> None:
 
 
 def _spawn_piped(options: argparse.Namespace) -> None:
-    text, name = sys.stdin.read(), options.model_name
+    text, name = decoded(sys.stdin.buffer.read()), options.model_name
     if not name:
         found = parse_xml(text, "stdin").find("model")
         name = "" if found is None else found.get("name", "")
@@ -181,7 +189,7 @@ def _place(name: str) -> tuple[float, ...]:
 
 
 def run_world(options: argparse.Namespace) -> None:
-    """Pause, go on, or reset."""
+    """Pause, go on, step, or reset."""
     if options.pause is not None:
         _call("pause_physics" if options.pause else "unpause_physics", Empty)
     elif options.reset_all:
