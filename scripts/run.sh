@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Sets up what is missing, then runs the program whose name this script is called by: each NAME.sh that is a link to it,
-# for make NAME. `scripts/NAME.sh --help` lists its options; what it makes is in out/NAME/. NAME.sh and its exit code 0:
+# Sets up what is missing, then runs the program of the name of the script that sources it: NAME.sh, for make NAME. (Links
+# to it would be text on Windows, where Docker Desktop mounts this folder from.) `scripts/NAME.sh --help` lists its options;
+# what it makes is in out/NAME/. NAME.sh and its exit code 0:
 #
 #   course               drives the line course (--fast: in lockstep with the follower): all laps were completed
 #   navigate             maps a house and drives to goals: all reached without contact, map and pose within their limits
@@ -22,7 +23,7 @@ failure_code=2
 case $self in
   fuzz | chaos | soak | mutants) "$root/scripts/setup.sh" --tests || exit 2; program=test/$self/$self.py ;;
   bench) "$root/scripts/setup.sh" --learning || exit 2; program=src/sim_bench/scripts/bench.py ;;
-  run) fail "call it by the name of one of the links to it, such as scripts/course.sh" ;;
+  run) fail "call the script of a program, such as scripts/course.sh" ;;
   *) set_up_trial "$@"; program=src/evaluation/scripts/${self/%course/course_run}.py ;;
 esac
 enter_workspace

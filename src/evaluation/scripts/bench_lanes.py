@@ -1,1 +1,7 @@
-course_run.py
+#!/usr/bin/env python3
+"""The program of this name (--help)."""
+
+from evaluation.start import start
+
+if __name__ == "__main__":
+    start()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every program of this package, by the name under which it is called (--help)."""
+"""The program of this name (--help)."""
 
 from evaluation.start import start
 
