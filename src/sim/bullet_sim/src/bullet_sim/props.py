@@ -22,9 +22,9 @@ or
 """
 
 import math
-import os
 import shutil
 import tomllib
+import uuid
 from pathlib import Path
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
@@ -239,7 +239,7 @@ def write_models(models: Path = DATA / "models", props: Path = DATA / "props") -
         if path.is_file() and path.read_text(encoding="utf-8") == text:
             continue
         path.parent.mkdir(parents=True, exist_ok=True)
-        new = path.with_name(f"{path.name}.{os.getpid()}")
+        new = path.with_name(f"{path.name}.{uuid.uuid4().hex}")  # containers share process ids
         new.write_text(text, encoding="utf-8")
         new.replace(path)
     folders = {name.partition("/")[0] for name in wanted}
