@@ -170,7 +170,9 @@ def run_pytest(name: str, paths: Sequence[Path], *options: str,
     command = [*before, *PYTEST, f"--junitxml={folder / 'pytest.xml'}", *options,
                *(str(path.relative_to(ROOT)) for path in paths)]
     ended = files.run_marked(command, folder / "output.log", SESSION_LIMIT, progress())
-    return results_of(result_of(name, files.ending(*ended, folder), 0.0))
+    results = results_of(result_of(name, files.ending(*ended, folder), 0.0))
+    lost = {str(path.relative_to(ROOT)) for path in paths} - {each.name for each in results}
+    return results + [Result(each, problems=["none of its tests ran"]) for each in sorted(lost)]
 
 
 def run_alone(path: Path, tests: Iterable[str] = ()) -> Result:
@@ -300,7 +302,11 @@ def main() -> int:
     apart = files_that_say(PROCESSES, "test_*.py") | files_that_say(ANY, "*.test")
     plain = files_that_say(ANY, "test_*.py") - apart - files.rostest_scripts()
     if args.files:
-        plain, apart = ({path.resolve() for path in args.files} & kind for kind in (plain, apart))
+        named = {path.resolve() for path in args.files}
+        if strange := named - plain - apart:
+            parser.error(f"{min(strange)}: no file of tests; they are test_*.py and *.test in the "
+                         "folders test")
+        plain, apart = plain & named, apart & named
     if args.fast:
         chosen = fast_files(changed_files(), plain)
         results = run_pytest("fast", sorted(chosen), *PLAIN)

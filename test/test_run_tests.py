@@ -282,3 +282,28 @@ def test_low_priority_is_of_the_command_alone(runner, tmp_path):
         wanted = 5 if low else 0
         assert code == 0 and int(nice) == min(19, os.nice(0) + wanted)
         assert "nice" not in group or int(group.split()[-1]) == wanted
+
+
+def test_a_file_of_which_no_test_ran_is_a_failure(runner, monkeypatch):
+    report = ('<testsuites><testsuite><testcase file="test/test_common.py" name="test_a"/>'
+              '</testsuite></testsuites>')
+    runner.OUT.mkdir(parents=True)
+
+    def run_marked(command, log, *_):
+        log.touch()
+        log.with_name("pytest.xml").write_text(report)
+        return 0, []
+
+    monkeypatch.setattr(runner.files, "run_marked", run_marked)
+    paths = [ROOT / "test/test_common.py", ROOT / QUICK]
+    results = runner.run_pytest("without processes", paths)
+    assert [each for result in results for each in result.failures] == [
+        f"{QUICK}: none of its tests ran"]
+
+
+def test_a_named_file_that_is_no_file_of_tests_is_refused(runner, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["run_tests.py", QUICK, "test/test_none.py"])
+    with pytest.raises(SystemExit) as end:
+        runner.main()
+    assert end.value.code == 2
+    assert "test/test_none.py: no file of tests" in capsys.readouterr().err
