@@ -44,7 +44,7 @@ def running_page(name: str, rviz: str) -> tuple[str, ...]:
         return ()
     wished = _wished(uri, node) | ({"rviz": rviz} if rviz else {})
     sign = sign_of_life(uri, node)
-    if sign is Sign.GONE:
+    if sign in (Sign.GONE, Sign.UNKNOWN):  # the latter: of a container, say, that was made anew
         # A page whose master has ended keeps its address, and changes to the next master by itself.
         address = local_url(str(wished["address"]), wished["port"])
         told = ask(address)

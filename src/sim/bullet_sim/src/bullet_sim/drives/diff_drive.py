@@ -38,8 +38,8 @@ class DiffDriveParameters:
 def wheels_from_tags(model: Model, tags: PluginParameters | LoggedParameters
                      ) -> tuple[Joint, Joint]:
     """The joints of the left and the right wheel, by tags; UnknownName if there is none."""
-    return (model.joint(tags.text("leftJoint", "left_joint")),
-            model.joint(tags.text("rightJoint", "right_joint")))
+    left, right = tags.text("leftJoint", "left_joint"), tags.text("rightJoint", "right_joint")
+    return model.joint(left), model.joint(right)
 
 
 class DiffDrive:
