@@ -1,6 +1,6 @@
 """A file of tests in a session of its own, as an item of pytest; nothing of it stays behind.
 
-    python3 -m pytest src/learning_topic/test/course.test     a rostest file
+    python3 -m pytest src/learning_topic/test/lesson_05.test  a rostest file
     python3 -m pytest --own-process FILE...                   Python files, too
 
 Whatever it starts inherits a mark in its environment, and is found by that in any session.
