@@ -29,7 +29,7 @@ WIDTH_PX, HEIGHT_PX = 1200, 846  # the windows of the shipped rviz configuration
 STATUS_PX = 28  # the lowest line of rviz; its frames a second are never the same
 HEADER = struct.Struct(">25I")  # of an XWD file
 COLOUR_BYTES = 12  # of an entry of its colour table
-STEP, LIMIT = 0.4, 20.0  # s, wall, between two looks, and until the picture stands still
+STEP, STILL_LIMIT = 0.4, 20.0  # s, wall, between two looks, and until the picture stands still
 
 
 class Screen:
@@ -67,7 +67,7 @@ class Screen:
 
     def still_picture(self) -> np.ndarray:
         """The same when nothing changes any more; RunError if it never stands still."""
-        until = time.monotonic() + LIMIT
+        until = time.monotonic() + STILL_LIMIT
         before = self.picture()
         while time.monotonic() < until:
             time.sleep(STEP)
@@ -75,7 +75,7 @@ class Screen:
             if np.array_equal(now[:-STATUS_PX], before[:-STATUS_PX]):
                 return now
             before = now
-        raise RunError(f"the screen changed for {LIMIT:.0f} s without end")
+        raise RunError(f"the screen changed for {STILL_LIMIT:.0f} s without end")
 
 
 def save(path: Path, picture: np.ndarray) -> None:
