@@ -104,7 +104,7 @@ def test_an_engine_that_gazebo_does_not_know_is_an_error_line(caplog, engine, sa
 def test_without_a_ros_network_it_says_so(caplog):
     # conforms: ~enable_ros_network
     with caplog.at_level(logging.INFO):
-        node.open_network(None, None, NodeParameters(enable_ros_network=False))
+        node.open_network(None, NodeParameters(enable_ros_network=False))
     assert "ROS gazebo topics/services are disabled" in caplog.text
 
 

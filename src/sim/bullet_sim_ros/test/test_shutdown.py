@@ -26,10 +26,14 @@ except KeyboardInterrupt:
 
 @pytest.fixture(autouse=True)
 def own_rospy(monkeypatch):
+    before = set(threading.enumerate())
     for hooks in ("_client_shutdown_hooks", "_preshutdown_hooks", "_shutdown_hooks"):
         monkeypatch.setattr(core, hooks, [])
     for flag in ("_shutdown_flag", "_in_shutdown"):
         monkeypatch.setattr(core, flag, False)
+    yield
+    for thread in set(threading.enumerate()) - before:  # it may be about to set a flag
+        thread.join(LIMIT)
 
 
 def test_no_topic_is_closed_while_the_loop_still_publishes(monkeypatch):
