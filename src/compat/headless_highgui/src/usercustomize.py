@@ -1,7 +1,8 @@
 """Python runs this file at its start: it amends a few modules when a script imports them.
 
 cv2 gets its windows, Tk a line for want of a screen, some modules get the names that they had
-when a script was written, and rospy's subscribers say so when their simulator has ended.
+when a script was written, and rospy's subscribers say so when their simulator has ended. A second
+course's roslaunch ends with one line.
 Programs of ours print in the language of the locale, and end at Ctrl-C without a traceback.
 """
 
@@ -10,7 +11,8 @@ import sys
 import time
 from importlib.machinery import PathFinder
 
-AMENDED = {"cv2", "numpy", "yaml", "joint_state_publisher", "rospy.topics", "tkinter"}
+AMENDED = {"cv2", "numpy", "yaml", "joint_state_publisher", "roslaunch.loader", "rospy.topics",
+           "tkinter"}
 
 
 class Watch:
@@ -34,7 +36,7 @@ class Watch:
     @staticmethod
     def load(load, module):
         load(module)
-        for amend in (put_old_names_back, give_windows, tell_of_the_end):
+        for amend in (put_old_names_back, give_windows, tell_of_the_end, end_refused_launch):
             try:
                 amend(module)
             except Exception as error:  # a script that needs none of it must not fail here
@@ -60,6 +62,13 @@ def tell_of_the_end(module):
         from headless_highgui.course_end import amend_topics
 
         amend_topics(module)
+
+
+def end_refused_launch(module):
+    if module.__name__ == "roslaunch.loader":
+        from headless_highgui.launch_end import amend_loader
+
+        amend_loader(module)
 
 
 def watch_standard():
