@@ -234,7 +234,7 @@ def test_python_without_cv2_loads_nothing_more():
 
 def test_a_module_is_watched_for_once():
     code = "import cv2; from usercustomize import Watch; print(sorted(Watch.waited_for))"
-    waited_for = "['joint_state_publisher', 'rospy.topics', 'tkinter', 'yaml']"
+    waited_for = "['joint_state_publisher', 'roslaunch.loader', 'rospy.topics', 'tkinter', 'yaml']"
     assert run_python(code, {"DISPLAY": ""}).stdout.strip() == waited_for
 
 
