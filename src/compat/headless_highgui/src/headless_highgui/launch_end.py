@@ -1,6 +1,6 @@
 """Ends a roslaunch that empty_world.launch's guard has refused, after the guard's one line."""
 
-GUARD, REFUSED = "/unless_running ", "returned with code [1]"
+GUARD, REFUSED = "/unless_running ", "with code [1]"
 
 
 def amend_loader(loader):
