@@ -218,11 +218,12 @@ def test_the_report_comes_before_the_film_and_a_second_ctrl_c_ends_that(
         start, tmp_path, monkeypatch):
     hanging = tmp_path / "bin" / "ffmpeg"
     hanging.parent.mkdir()
-    hanging.write_text("#!/bin/sh\nexec sleep 1000\n")
+    hanging.write_text('#!/bin/sh\ntouch "$0.started"\nexec sleep 1000\n')
     hanging.chmod(0o755)
     monkeypatch.setenv("PATH", str(hanging.parent), prepend=os.pathsep)
     run = start(*FILMED)
     run.wait_for_driving()
+    wait_until(hanging.with_name("ffmpeg.started").exists, LIMIT, "the film's first picture")
     run.process.send_signal(signal.SIGINT)
     wait_until((run.out / "report.json").exists, LIMIT, "the report")
     time.sleep(0.5)

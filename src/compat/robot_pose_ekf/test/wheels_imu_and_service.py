@@ -19,7 +19,7 @@ LIMIT = 60.0  # s
 
 class WheelsAndImu(unittest.TestCase):
     def setUp(self):
-        self.arrived, self.newest = threading.Condition(), None
+        self.arrived, self.newest, self.count = threading.Condition(), None, 0
         rospy.Subscriber("/robot_pose_ekf/odom_combined", PoseWithCovarianceStamped, self.keep)
         self.odometry = rospy.Publisher("/odom", Odometry, queue_size=5)
         self.imu = rospy.Publisher("/imu_data", Imu, queue_size=5)
@@ -27,6 +27,7 @@ class WheelsAndImu(unittest.TestCase):
     def keep(self, message):
         with self.arrived:
             self.newest = message
+            self.count += 1
             self.arrived.notify_all()
 
     def publish(self, x, yaw):
@@ -50,6 +51,12 @@ class WheelsAndImu(unittest.TestCase):
 
     def test_the_imu_turns_the_pose_and_the_wheels_move_it(self):
         self.until(0.0, 1.0, lambda pose: abs(pose.orientation.z) < 0.01, "it begins at yaw 0")
+        rospy.wait_for_service("/robot_pose_ekf/get_status", LIMIT)
+        status = rospy.ServiceProxy("/robot_pose_ekf/get_status", GetStatus)
+        self.until(0.0, 1.0, lambda pose: "imu on /imu_data: is used, is active" in status().status,
+                   "no IMU; a turn before its first message would not be noticed")
+        heard = self.count
+        self.until(0.0, 1.0, lambda pose: self.count > heard + 5, "no more poses")
         self.until(0.0, 1.0 + math.pi / 2, lambda pose: pose.orientation.z > 0.7, "no turn")
         self.until(1.0, 1.0 + math.pi / 2, lambda pose: abs(pose.position.y - 1.0) < 0.02,
                    "no metre to the left")
@@ -65,11 +72,10 @@ class WheelsAndImu(unittest.TestCase):
             with self.arrived:
                 self.arrived.wait(0.05)
         listener.unregister()
-        rospy.wait_for_service("/robot_pose_ekf/get_status", LIMIT)
-        status = rospy.ServiceProxy("/robot_pose_ekf/get_status", GetStatus)().status
-        self.assertIn("odom on /odom: is used, is active", status)
-        self.assertIn("vo on /vo: is used, is not active, received 0 messages", status)
-        self.assertIn("gps on /gps: is not used", status)
+        lines = status().status
+        self.assertIn("odom on /odom: is used, is active", lines)
+        self.assertIn("vo on /vo: is used, is not active, received 0 messages", lines)
+        self.assertIn("gps on /gps: is not used", lines)
 
 
 if __name__ == "__main__":
