@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import rospy
 
-from move_base.exported import GLOBAL, exported, load
+from move_base.exported_planners import GLOBAL, exported, load
 from nav_algorithms.costmap.costs import LETHAL, UNKNOWN, Costmap
 from nav_nodes.messages import pose_of, stamped_pose
 

@@ -8,7 +8,7 @@ import pytest
 from ackermann_msgs.msg import AckermannDriveStamped
 from geometry_msgs.msg import Quaternion
 
-from move_base import carrot, recoveries
+from move_base import recoveries
 from move_base.base import ackermann, twist
 from move_base.global_planners import GLOBAL_PLANNERS
 from move_base.goals import fault_of
@@ -16,11 +16,8 @@ from move_base.local_planners import LOCAL_PLANNERS
 from move_base.plugin import PARAMS, chosen, table
 from move_base.recoveries import RECOVERIES
 from move_base.services import offsets, square
-from nav_algorithms.costmap.costs import LETHAL, Costmap
+from nav_algorithms.costmap.costs import Costmap
 from nav_nodes.parameters import ParameterError
-
-CARROT = carrot.CarrotSettings(step_size=0.0, min_dist_from_robot=0.1)
-OUTLINE = np.array([[-0.1, -0.1], [-0.1, 0.1], [0.1, 0.1], [0.1, -0.1]])
 
 
 @pytest.fixture
@@ -94,26 +91,6 @@ def test_square_stays_in_the_costmap(costmap):
     costmap.cells[square(costmap, np.array([0.05, 2.05, 0.0]), 0.2)] = 1
     assert costmap.cells[18:23, :3].all() and costmap.cells.sum() == 15
     assert costmap.cells[square(costmap, np.array([-9.0, 2.0, 0.0]), 0.2)].size == 0
-
-
-def test_carrot(costmap):
-    """The goal, or what is free before it, or nothing."""
-    start, goal = np.array([1.0, 2.0, 0.0]), np.array([3.0, 2.0, 1.0])
-    assert carrot.plan(costmap, start, goal, OUTLINE, CARROT)[-1] == pytest.approx(goal)
-    costmap.cells[:, 25:] = LETHAL
-    end = carrot.plan(costmap, start, goal, OUTLINE, CARROT)[-1]
-    assert end[0] == pytest.approx(2.4, abs=0.11) and end[1] == 2.0
-    assert 0.0 < end[2] < 1.0
-    costmap.cells[:] = LETHAL
-    assert carrot.plan(costmap, start, goal, OUTLINE, CARROT) is None
-
-
-def test_a_carrot_may_be_however_far_away(costmap):
-    """The path ends where the line leaves the costmap."""
-    for far in (50.0, 1e9, 1e300):
-        end = carrot.plan(costmap, np.array([1.0, 2.0, 0.0]), np.array([far, 2.0, 0.0]), OUTLINE,
-                          CARROT)[1]
-        assert end[0] == pytest.approx(3.9, abs=0.11) and end[1] == 2.0
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""navfn's and global_planner's paths, with lengths worked out by hand."""
+"""Paths of navfn, global_planner and carrot_planner, with lengths worked out by hand."""
 
 import time
 
@@ -7,7 +7,7 @@ import pytest
 from defaults import of
 
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
-from nav_algorithms.global_planning import astar, navfn
+from nav_algorithms.global_planning import astar, carrot, navfn
 from nav_algorithms.global_planning.orientation import directions, orient
 from nav_algorithms.global_planning.potential import (
     crossing_costs,
@@ -18,10 +18,17 @@ from nav_algorithms.global_planning.potential import (
 from nav_algorithms.poses import wrap_angle
 
 START, GOAL = np.array([-4.0, -3.0, 0.3]), np.array([4.0, 3.0, 1.0])
+CARROT = carrot.CarrotSettings(step_size=0.0, min_dist_from_robot=0.1)
+OUTLINE = np.array([[-0.1, -0.1], [-0.1, 0.1], [0.1, 0.1], [0.1, -0.1]])
 
 
 def empty():
     return Costmap(np.zeros((200, 240), np.uint8), 0.05, (-6.0, -5.0))
+
+
+def floor():
+    """4 m x 4 m, free."""
+    return Costmap(np.zeros((40, 40), np.uint8), 0.1, (0.0, 0.0))
 
 
 def walled(gap=None):
@@ -240,3 +247,23 @@ def test_a_large_map_takes_less_than_50_ms():
         navfn_plan(costmap, np.array([1.0, 1.0, 0]), np.array([19.0, 19.0, 0]))
         times.append(time.process_time() - begin)
     assert min(times) < 0.05
+
+
+def test_carrot_goes_to_the_goal_or_what_is_free_before_it_or_nowhere():
+    costmap = floor()
+    start, goal = np.array([1.0, 2.0, 0.0]), np.array([3.0, 2.0, 1.0])
+    assert carrot.plan(costmap, start, goal, OUTLINE, CARROT)[-1] == pytest.approx(goal)
+    costmap.cells[:, 25:] = LETHAL
+    end = carrot.plan(costmap, start, goal, OUTLINE, CARROT)[-1]
+    assert end[0] == pytest.approx(2.4, abs=0.11) and end[1] == 2.0
+    assert 0.0 < end[2] < 1.0
+    costmap.cells[:] = LETHAL
+    assert carrot.plan(costmap, start, goal, OUTLINE, CARROT) is None
+
+
+def test_a_carrot_may_be_however_far_away_and_the_path_ends_at_the_costmap_s_edge():
+    costmap = floor()
+    for far in (50.0, 1e9, 1e300):
+        end = carrot.plan(costmap, np.array([1.0, 2.0, 0.0]), np.array([far, 2.0, 0.0]), OUTLINE,
+                          CARROT)[1]
+        assert end[0] == pytest.approx(3.9, abs=0.11) and end[1] == 2.0

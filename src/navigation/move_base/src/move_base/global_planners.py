@@ -11,10 +11,9 @@ import rospy
 from nav_msgs.msg import Path
 
 from costmap_2d import CostmapROS
-from move_base import carrot
 from move_base.plugin import Plugin, settings_from
 from nav_algorithms.costmap.costs import Costmap
-from nav_algorithms.global_planning import astar, hybrid_astar, navfn
+from nav_algorithms.global_planning import astar, carrot, hybrid_astar, navfn
 from nav_nodes.messages import stamped_pose
 
 

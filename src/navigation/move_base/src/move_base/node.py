@@ -19,9 +19,9 @@ from move_base_msgs.msg import (
 from costmap_2d import CostmapROS
 from costmap_2d.settings import SEARCHED_UPWARDS
 from move_base.base import Base
+from move_base.exported_planners import global_planner, local_planner
 from move_base.goals import INVALID, fault_of, in_frame
 from move_base.navigator import Navigator, Outcome
-from move_base.own_planners import global_planner, local_planner
 from move_base.planning import CannotPlanYet, Planning
 from move_base.plugin import settings_from, table
 from move_base.recoveries import load

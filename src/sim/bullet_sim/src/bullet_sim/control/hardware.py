@@ -6,7 +6,7 @@ The semantics are those of gazebo_ros_control's default_robot_hw_sim.cpp: one in
 from collections.abc import Iterable, Mapping
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
-from bullet_sim.control.joint_drives import EffortDrive, make_drive
+from bullet_sim.control.joint_motors import EffortMotor, make_motor
 from bullet_sim.control.pid import PidGains
 from bullet_sim.description import JointLimits
 from bullet_sim.errors import SimulationError, UnknownName
@@ -33,11 +33,11 @@ class RobotHardware:
             kind = _joint(model, name).description.type
             self.joints[name] = JointHandle(name, kind, limits.get(name, NO_LIMITS))
             self._handles[name] = CommandHandle(self.joints[name], transmission.interface)
-        drives = {name: make_drive(handle, gains.get(name), model.joint(name))
+        drives = {name: make_motor(handle, gains.get(name), model.joint(name))
                   for name, handle in self._handles.items()}
         self._drives = list(drives.values())
-        self._motors = [drive for drive in self._drives if not isinstance(drive, EffortDrive)]
-        by_effort = [name for name, drive in drives.items() if isinstance(drive, EffortDrive)]
+        self._motors = [drive for drive in self._drives if not isinstance(drive, EffortMotor)]
+        by_effort = [name for name, drive in drives.items() if isinstance(drive, EffortMotor)]
         by_motor = [name for name in drives if name not in by_effort]
         self._effort_groups = [
             (group, [self.joints[name] for name in group.names],

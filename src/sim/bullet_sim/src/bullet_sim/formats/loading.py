@@ -13,7 +13,7 @@ from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf.include import read_include
 from bullet_sim.formats.sdf.model import read_model
 from bullet_sim.formats.sdf.scene import read_light
-from bullet_sim.formats.sdf.schema import warn_of_unknown_elements
+from bullet_sim.formats.sdf.unknown_elements import warn_of_unknown_elements
 from bullet_sim.formats.sdf.world import read_world
 from bullet_sim.formats.source import Source
 from bullet_sim.formats.urdf.robot import read_robot

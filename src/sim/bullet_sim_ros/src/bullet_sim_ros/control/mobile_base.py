@@ -19,7 +19,7 @@ from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.registry import Controller
-from bullet_sim_ros.plugin_host.drives import OdometryOutput
+from bullet_sim_ros.plugin_host.drive_topics import OdometryOutput
 
 
 def read_distance(p: ControllerParameters, robot: RobotFacts, name: str, first: str, second: str,

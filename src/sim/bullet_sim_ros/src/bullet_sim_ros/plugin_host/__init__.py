@@ -4,7 +4,7 @@ It corresponds to gazebo_plugins/include/gazebo_plugins/gazebo_ros_utils.h.
 """
 
 from bullet_sim_ros.plugin_host.context import PluginContext
-from bullet_sim_ros.plugin_host.drives import open_odometry, subscribe_commands
+from bullet_sim_ros.plugin_host.drive_topics import open_odometry, subscribe_commands
 from bullet_sim_ros.plugin_host.registry import plugin
 from bullet_sim_ros.plugin_host.sensor_plugin import SensorPlugin, no_tf_prefix
 

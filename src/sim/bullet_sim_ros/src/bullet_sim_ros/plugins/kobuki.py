@@ -16,7 +16,7 @@ from bullet_sim.sensors.imu import ImuReading, ImuSensor
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host import PluginContext, plugin, subscribe_commands
-from bullet_sim_ros.plugin_host.drives import OdometryOutput
+from bullet_sim_ros.plugin_host.drive_topics import OdometryOutput
 from bullet_sim_ros.plugins.kobuki_events import BaseTopic, BumperTopic, CliffTopic, WheelDropTopic
 
 RATE = 50.0  # Hz, that of the real base; gazebo_ros_kobuki.cpp, OnUpdate, publishes at each step

@@ -10,7 +10,7 @@ from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import WheelOdometry
 from bullet_sim_ros import convert, names, params
 from bullet_sim_ros.plugin_host import PluginContext, open_odometry, plugin, subscribe_commands
-from bullet_sim_ros.plugin_host.drives import OdometrySource, wheel_transform
+from bullet_sim_ros.plugin_host.drive_topics import OdometrySource, wheel_transform
 
 
 @plugin("libgazebo_ros_tricycle_drive.so")

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from bullet_sim.control.controllers.commands import Commands
 from bullet_sim.control.handles import CommandHandle
-from bullet_sim.control.joint_drives import position_error
+from bullet_sim.control.joint_motors import position_error
 from bullet_sim.control.limits import clamp
 from bullet_sim.control.pid import Pid
 

@@ -16,7 +16,7 @@ STRONGEST = 1e6  # N m or N, if there is no limit; much more becomes NaN in the 
 ARRIVED = 1e-9  # rad or m
 
 
-class JointDrive:
+class JointMotor:
     """Turns a joint's command, within its limits, into settings of the engine."""
 
     def __init__(self, handle: CommandHandle, limits: JointLimits):
@@ -29,7 +29,7 @@ class JointDrive:
         self.limiter.reset()
 
 
-class EffortDrive(JointDrive):
+class EffortMotor(JointMotor):
     """Applies the commanded effort in each step."""
 
     def effort(self, period: float) -> float:
@@ -39,7 +39,7 @@ class EffortDrive(JointDrive):
         return effort
 
 
-class PidDrive(EffortDrive):
+class PidMotor(EffortMotor):
     """A position or velocity command with gains: a PID turns the error into an effort."""
 
     def __init__(self, handle: CommandHandle, limits: JointLimits, gains: PidGains):
@@ -65,7 +65,7 @@ class PidDrive(EffortDrive):
         self.pid.reset()
 
 
-class VelocityMotor(JointDrive):
+class VelocityMotor(JointMotor):
     """A velocity command without gains: a motor with the effort limit as its maximum."""
 
     def __init__(self, handle: CommandHandle, limits: JointLimits, joint: Joint):
@@ -105,14 +105,14 @@ def position_error(joint: JointHandle, target: float) -> float:
     return target - joint.position
 
 
-def make_drive(handle: CommandHandle, gains: PidGains | None,
-               joint: Joint) -> JointDrive:
-    """The drive for a joint's interface, with or without gains."""
+def make_motor(handle: CommandHandle, gains: PidGains | None,
+               joint: Joint) -> JointMotor:
+    """The motor for a joint's interface, with or without gains."""
     limits = handle.joint.limits
     limits = replace(limits, effort=min(limits.effort, STRONGEST))
     if handle.interface == "effort":
-        return EffortDrive(handle, limits)
+        return EffortMotor(handle, limits)
     if gains is not None:
-        return PidDrive(handle, limits, gains)
+        return PidMotor(handle, limits, gains)
     kind = PositionMotor if handle.interface == "position" else VelocityMotor
     return kind(handle, limits, joint)

@@ -7,9 +7,9 @@ import pytest
 import rospy
 from rospkg import RosPack
 
-from move_base import exported, plugin
+from move_base import exported_planners, plugin
+from move_base.exported_planners import GLOBAL, exported, global_planner, local_planner
 from move_base.local_planners import Situation
-from move_base.own_planners import global_planner, local_planner
 from nav_algorithms.costmap.costs import Costmap
 from nav_nodes.parameters import ParameterError
 
@@ -84,8 +84,8 @@ def package(tmp_path, monkeypatch):
     (folder / "planner_plugin.xml").write_text(PLUGINS.format(folder.name))
     (folder / "src" / f"{folder.name}_planners.py").write_text(CODE)
     packages = RosPack([str(tmp_path)])
-    monkeypatch.setattr(exported.rospkg, "RosPack", lambda: packages)
-    monkeypatch.setattr(exported.sys, "path", [*exported.sys.path])
+    monkeypatch.setattr(exported_planners.rospkg, "RosPack", lambda: packages)
+    monkeypatch.setattr(exported_planners.sys, "path", [*exported_planners.sys.path])
     monkeypatch.setattr(rospy, "Publisher", Topic)
     monkeypatch.setattr(rospy.Time, "now", lambda: rospy.Time(1))
     monkeypatch.setattr(plugin, "read_parameters",
@@ -141,11 +141,11 @@ def test_a_broken_file_is_named(package):
 def test_a_package_that_nobody_can_read_is_passed_over(package):
     manifest = package / "package.xml"
     manifest.write_text(manifest.read_text().replace("a@example.org", "nobody"))
-    assert exported.exported(exported.GLOBAL) == {}
+    assert exported(GLOBAL) == {}
 
 
 def test_ours_are_found_without_looking_at_packages(monkeypatch):
-    monkeypatch.setattr(exported, "exported", lambda _base: pytest.fail("looked"))
+    monkeypatch.setattr(exported_planners, "exported", lambda _base: pytest.fail("looked"))
     for name in ("navfn/NavfnROS", "global_planner/GlobalPlanner", "NavfnROS"):
         assert name.rpartition("/")[2] == global_planner(name, "x").NAME
     for name in ("base_local_planner/TrajectoryPlannerROS", "dwa_local_planner/DWAPlannerROS"):
