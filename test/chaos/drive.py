@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from pathlib import Path
 
-from course import WATCHED, Course
+from course import WATCHED, CourseUnderTest
 from members import MARK, end_left_over, matching, wait_until
 from states import Place, driven, places
 
@@ -25,7 +25,7 @@ PACKAGE = "<package format='2'><name>chaos_course</name><version>0.0.0</version>
 class Watched(ABC):
     """A drive whose car is tracked by the simulator's own log, and whose processes are known."""
 
-    def __init__(self, course: Course, folder: Path, environment: dict[str, str]):
+    def __init__(self, course: CourseUnderTest, folder: Path, environment: dict[str, str]):
         self.course, self.folder = course, folder
         self.mark, self.states = str(folder), folder / "states"
         self._environment = {
@@ -68,10 +68,10 @@ class Watched(ABC):
         (self.folder / LAUNCH[1]).write_text(text, encoding="utf-8")
 
 
-class Drive(Watched):
+class JudgedDrive(Watched):
     """Starts immediately; `results` is the folder for results, all else goes to `folder`."""
 
-    def __init__(self, course: Course, folder: Path, results: Path, fast: bool, film: bool,
+    def __init__(self, course: CourseUnderTest, folder: Path, results: Path, fast: bool, film: bool,
                  environment: dict[str, str]):
         super().__init__(course, folder, environment)
         self.results, self.log = results, folder / "said"

@@ -13,7 +13,7 @@ from pathlib import Path
 from random import Random
 
 from clock import set_clock
-from drive import Drive, Watched
+from drive import JudgedDrive, Watched
 from members import send
 
 LONGEST_JUMP = 7200.0  # s
@@ -31,7 +31,7 @@ class Fault:
     begin: Callable[[Watched, Random], object]
     codes: tuple[int, ...]  # allowed exit codes of the judge
     victim: str = ""  # process or node that it affects
-    end: Callable[[Drive], object] | None = None
+    end: Callable[[JudgedDrive], object] | None = None
     on_tmpfs: bool = False  # results are on a small file system of their own
     by_hand: bool = False  # `begin` ends the victim, which is then restarted
     roscore: bool = False  # by hand: the master is not roslaunch's
@@ -45,7 +45,7 @@ def _kill(victim: str, codes: tuple[int, ...] = ENDED) -> Fault:
 def _kill_driver(victim: str) -> Fault:
     """Kill it while the judge is suspended, which would end the simulation before the car stops."""
 
-    def begin(drive: Drive, _: Random) -> None:
+    def begin(drive: JudgedDrive, _: Random) -> None:
         send(drive.pids("judge"), signal.SIGSTOP)
         send(drive.pids(victim), signal.SIGKILL)
 
@@ -67,7 +67,7 @@ def _restart(victim: str, killed: bool, roscore: bool = False) -> Fault:
                  by_hand=True, roscore=roscore)
 
 
-def fill_disk(drive: Drive, rng: Random) -> None:
+def fill_disk(drive: JudgedDrive, rng: Random) -> None:
     """Fill the disk until nothing, or a little, is left, so that files are cut off."""
     spare = rng.choice((0, 0, 4096, 16384, 65536, 262144))
     with (drive.results / FILLER).open("wb", buffering=0) as file:
@@ -91,7 +91,7 @@ def set_loopback(up: bool) -> None:
         fcntl.ioctl(probe, SET_FLAGS, struct.pack("16sh14x", b"lo", flags))
 
 
-def jump_clock(drive: Drive, rng: Random) -> None:
+def jump_clock(drive: JudgedDrive, rng: Random) -> None:
     """Move the clock forward or back, by seconds or hours, and leave it there."""
     seconds = rng.choice((1.0, LONGEST_JUMP)) * rng.uniform(-1.0, 1.0) * 10.0
     set_clock(drive.folder, seconds)

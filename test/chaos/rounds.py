@@ -13,8 +13,8 @@ from random import Random
 
 from checks import half_files, wrong_logs, wrong_words
 from clock import clock_environment
-from course import Course
-from drive import DURATION, Drive
+from course import CourseUnderTest
+from drive import DURATION, JudgedDrive
 from faults import CLOCK, Fault, empty_disk, faults_of
 from members import wait_until
 from states import STOP_TIME, drives_on
@@ -32,7 +32,7 @@ WATCH_LIMIT = 100.0  # s, wall, for that: in lockstep the world waits a second f
 class Round:
     """The fault and timing that a seed determines."""
 
-    course: Course
+    course: CourseUnderTest
     seed: int
     fault: Fault
     fast: bool
@@ -47,7 +47,7 @@ class Round:
         return f"{self.fault.name}{' while starting' if self.starting else ''}"
 
 
-def drawn(course: Course, seed: int, only: str = "") -> Round:
+def drawn(course: CourseUnderTest, seed: int, only: str = "") -> Round:
     """The round of this seed, among faults whose name begins with `only`."""
     rng = Random(f"{course.name}/{seed}")
     choice = [each for each in faults_of(course.drivers) if each.name.startswith(only)]
@@ -88,7 +88,8 @@ class Play:
     def _play(self) -> Iterator[str]:
         played = self._round
         clock = clock_environment(self._folder) if played.fault.name == CLOCK else {}
-        drive = Drive(played.course, self._folder, self._results, played.fast, played.film, clock)
+        drive = JudgedDrive(played.course, self._folder, self._results, played.fast, played.film,
+                            clock)
         try:
             if not self._wait_for_moment(drive):
                 yield f"never came so far: {_last_line(drive)}"
@@ -112,7 +113,7 @@ class Play:
         if self._without_driver and (late := drives_on(drive.places(), since, until)):
             yield late
 
-    def _wait_for_moment(self, drive: Drive) -> bool:
+    def _wait_for_moment(self, drive: JudgedDrive) -> bool:
         played = self._round
         if played.starting:
             there = drive.wait_for(
@@ -123,13 +124,13 @@ class Play:
             time.sleep(played.delay)  # a random moment, not a wait
         return there
 
-    def _is_victim_there(self, drive: Drive) -> bool:
+    def _is_victim_there(self, drive: JudgedDrive) -> bool:
         """Whether the victim runs; near the drive's end it need not."""
         victim = self._round.fault.victim
         return bool(not victim or drive.pids(victim) or drive.judge.poll() is not None
                     or _is_late(drive.now()))
 
-    def _act(self, drive: Drive) -> tuple[float, float]:
+    def _act(self, drive: JudgedDrive) -> tuple[float, float]:
         """Inject the fault; returns its begin and end, s, simulated."""
         fault = self._round.fault
         fault.begin(drive, self._rng)
@@ -154,7 +155,7 @@ def _is_late(now: float) -> bool:
     return now > DURATION / 2
 
 
-def _last_line(drive: Drive) -> str:
+def _last_line(drive: JudgedDrive) -> str:
     lines = drive.log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
     return lines[-1][:300] if lines else "it said nothing"
 

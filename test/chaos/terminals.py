@@ -10,7 +10,7 @@ import subprocess
 from functools import partial
 from pathlib import Path
 
-from course import Course
+from course import CourseUnderTest
 from drive import LAUNCH, Watched
 from members import matching, send, wait_until
 
@@ -30,7 +30,7 @@ NODE = r"__name:=(?!rosout\b|gazebo_gui\b)"
 class Terminals(Watched):
     """A terminal is open from the start of its command to its end; it may be opened again."""
 
-    def __init__(self, course: Course, folder: Path, roscore: bool):
+    def __init__(self, course: CourseUnderTest, folder: Path, roscore: bool):
         """Without `roscore`, roslaunch starts the master, and ends it."""
         super().__init__(course, folder, {
             "ROS_MASTER_URI": MASTER, "ROS_LOG_DIR": str(folder / "log" / "ros"),

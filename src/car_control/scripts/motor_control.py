@@ -11,7 +11,7 @@ import time
 
 import rospy
 from ackermann_msgs.msg import AckermannDriveStamped
-from car_control.motor import Drive, Motor, MotorSettings, controller_commands
+from car_control.motor import DriveCommand, Motor, MotorSettings, controller_commands
 from car_control.node import Ending, read_settings, start_node
 from car_control.reconfigure import serve_settings
 from geometry_msgs.msg import Twist
@@ -28,7 +28,7 @@ class MotorControl:
     def __init__(self, settings):
         self.motor = Motor(settings)
         self.lock = threading.Lock()  # callbacks run in different threads
-        self.sent = Drive(0.0, 0.0)
+        self.sent = DriveCommand(0.0, 0.0)
         self.next_time = self.sent_wall = -math.inf  # s, ROS time and wall time
         self.source = None  # the topic of the last command
         self.publishers = {
@@ -46,10 +46,10 @@ class MotorControl:
         }
 
     def take_twist(self, msg):
-        self.take("motor_output", Drive(msg.linear.x, msg.angular.z))
+        self.take("motor_output", DriveCommand(msg.linear.x, msg.angular.z))
 
     def take_ackermann(self, msg):
-        self.take("ackermann_cmd", Drive(msg.drive.speed, msg.drive.steering_angle))
+        self.take("ackermann_cmd", DriveCommand(msg.drive.speed, msg.drive.steering_angle))
 
     def take(self, topic, command):
         with self.lock:

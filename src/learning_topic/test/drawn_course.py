@@ -42,7 +42,7 @@ def rounded(corners, step=STEP):
     return np.stack([np.interp(even, way, points[:, k]) for k in (0, 1)], axis=1)
 
 
-class Course:
+class DrawnCourse:
     """The line on the floor, what the camera sees of it, and how far from it a pose is."""
 
     def __init__(self, corners=CORNERS):

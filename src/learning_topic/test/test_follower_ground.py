@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 import rospy
-from drawn_course import CAMERA, FOCAL, HEIGHT, WIDTH, Course
+from drawn_course import CAMERA, FOCAL, HEIGHT, WIDTH, DrawnCourse
 
 
 @pytest.mark.parametrize("ahead", [0.28, 0.4, 1.0])
@@ -25,7 +25,7 @@ def test_the_size_of_the_image_does_not_matter(lesson):
 
 
 def test_a_drawn_straight_line_is_seen_where_it_is(lesson):
-    course = Course(((-3, 0, 0.5), (3, 0, 0.5), (3, -3, 0.5), (-3, -3, 0.5)))
+    course = DrawnCourse(((-3, 0, 0.5), (3, 0, 0.5), (3, -3, 0.5), (-3, -3, 0.5)))
     for beside in (-0.1, 0.0, 0.08):
         seen = lesson(7).see_line(course.view((0.0, beside, 0.0)), lesson(7).CAMERA)
         assert len(seen) == 2 and seen[0][0] < seen[1][0]

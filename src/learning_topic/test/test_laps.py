@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 import rospy
-from drawn_course import Course, drive
+from drawn_course import DrawnCourse, drive
 
 
 @pytest.fixture(scope="module")
 def course():
-    return Course()
+    return DrawnCourse()
 
 
 def lesson_6(module):

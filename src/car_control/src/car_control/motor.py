@@ -45,7 +45,7 @@ class MotorSettings:
 
 
 @dataclass(frozen=True)
-class Drive:
+class DriveCommand:
     """Speed in m/s (in the tutorial's law: its own unit) and steering angle in rad."""
 
     speed: float
@@ -58,12 +58,12 @@ class Motor:
     def __init__(self, settings: MotorSettings):
         self.settings = settings
         self.emergency = False  # while true the car stands, whatever is commanded
-        self._command: Drive | None = None
+        self._command: DriveCommand | None = None
         self._taken = 0.0
-        self._last = Drive(0.0, 0.0)
+        self._last = DriveCommand(0.0, 0.0)
         self._last_time = 0.0
 
-    def take(self, command: Drive, now: float) -> None:
+    def take(self, command: DriveCommand, now: float) -> None:
         """A new command; one that is not finite raises ValueError and is ignored."""
         if not (math.isfinite(command.speed) and math.isfinite(command.steering_angle)):
             raise ValueError(
@@ -76,18 +76,18 @@ class Motor:
         """Drop the command: its sender has ended."""
         self._command = None
 
-    def drive(self, now: float) -> Drive:
+    def drive(self, now: float) -> DriveCommand:
         """The command for now. A stop is immediate and keeps the steering angle."""
         if not 0 <= now - self._taken <= self.settings.timeout:
             self._command = None  # also if the clock was set back: such a command is outdated
         if self.emergency or self._command is None:
-            self._last = Drive(0.0, self._last.steering_angle)
+            self._last = DriveCommand(0.0, self._last.steering_angle)
         else:
             self._last = self._limited(self._command, now - self._last_time)
         self._last_time = now
         return self._last
 
-    def _limited(self, command: Drive, period: float) -> Drive:
+    def _limited(self, command: DriveCommand, period: float) -> DriveCommand:
         settings = self.settings
         speed = _clamp(command.speed, settings.max_speed)
         if settings.max_acceleration > 0:
@@ -96,10 +96,10 @@ class Motor:
             so_far = self._last.speed if self._last.speed * speed > 0 else 0.0
             reach = abs(so_far) + settings.max_acceleration * max(period, 0.0)
             speed = _clamp(speed, reach)
-        return Drive(speed, _clamp(command.steering_angle, settings.max_steering_angle))
+        return DriveCommand(speed, _clamp(command.steering_angle, settings.max_steering_angle))
 
 
-def controller_commands(settings: MotorSettings, drive: Drive) -> dict[str, float]:
+def controller_commands(settings: MotorSettings, drive: DriveCommand) -> dict[str, float]:
     """Commands by controller name: rad/s for the four wheels, rad for the two hinges."""
     if not settings.ackermann:
         wheels = dict.fromkeys(WHEEL_CONTROLLERS, PAGE_WHEEL_GAIN * drive.speed)

@@ -68,7 +68,7 @@ def robot() -> ModelDescription:
     return ModelDescription("robot", links=tuple(links), joints=tuple(joints))
 
 
-class Drive(DiffDrive):
+class DrivenRobot(DiffDrive):
     """The robot's drive; a command counts at once."""
 
     def __init__(self, world: World):
@@ -128,7 +128,7 @@ def counted(monkeypatch):
 STANDING = {
     "box": lambda w: w.spawn(BOX, Pose((0.3, 0.2, 0.2))),
     "pendulum": lambda w: w.spawn(pendulum()),
-    "robot": lambda w: Drive(w),
+    "robot": lambda w: DrivenRobot(w),
     "nothing": lambda w: None,
 }
 
@@ -153,7 +153,7 @@ def test_rest_changes_no_result(counted, monkeypatch):
         if not leave_out:
             monkeypatch.setattr("bullet_sim.physics.auto_disable.REST_SPEED", 0.0)
         world.spawn(ground())
-        drive = Drive(world)
+        drive = DrivenRobot(world)
         world.step(30_000)
         start = drive.model.pose
         drive.command(0.1, 0.0)
@@ -195,7 +195,7 @@ DISTURBANCES = {
 def test_every_disturbance_ends_it(counted, disturbance):
     world = counted.world
     world.spawn(ground())
-    Drive(world)
+    DrivenRobot(world)
     world.spawn(pendulum(), Pose((0.0, 2.0, 0.0)))
     world.spawn(single("table", Box((0.3, 0.3, 0.2))), Pose((1.0, 0.0, 0.1)))
     box = world.spawn(BOX, Pose((1.0, 0.0, 0.4)))  # falls 15 cm on the table
@@ -222,7 +222,7 @@ def _close(model, before) -> bool:
 def test_a_command_repeated_unchanged_does_not_end_it(counted):
     world = counted.world
     world.spawn(ground())
-    drive = Drive(world)
+    drive = DrivenRobot(world)
     counted.settle()
     for _ in range(100):
         drive.command(0.0, 0.0)
@@ -234,7 +234,7 @@ def test_a_command_repeated_unchanged_does_not_end_it(counted):
 def test_looking_does_not_end_it(counted):
     world = counted.world
     world.spawn(ground())
-    Drive(world)
+    DrivenRobot(world)
     counted.settle()
     take_snapshot(world)
     world.update_scene()
@@ -248,7 +248,7 @@ def test_looking_does_not_end_it(counted):
 def test_a_robot_that_creeps_on_command_is_solved_and_arrives(counted, speed):
     world = counted.world
     world.spawn(ground())
-    drive = Drive(world)
+    drive = DrivenRobot(world)
     counted.settle()
     start = drive.model.pose.position[0]
     drive.command(speed, 0.0)
@@ -265,7 +265,7 @@ def test_a_slope_holds_a_box_while_a_robot_drives_fast(counted):
     world.spawn(ModelDescription("plate", static=True, links=(
         LinkDescription("link", collisions=(plate,)),)), slope)
     held = world.spawn(BOX, slope * Pose((0.0, 0.0, 0.1)))
-    drive = Drive(world)
+    drive = DrivenRobot(world)
     counted.settle()
     start = held.pose.position
     drive.command(0.2, 0.0)

@@ -15,7 +15,7 @@ from move_base.base import Base
 from move_base.local_planners import LocalPlanner, Situation
 from move_base.planning import Planning
 from move_base.progress import Progress
-from move_base.recoveries import Recovery, Rig
+from move_base.recoveries import Recovery, RecoveryContext
 from move_base.state_machine import GOAL_REACHED, State, StateMachine
 from move_base.watch import Watch
 from nav_nodes.messages import stamped_pose
@@ -132,7 +132,7 @@ class Navigator:
             self._base.stop()
             self._status.publish(RecoveryStatus(where, number, len(self._recoveries),
                                                 self._recovering.name))
-            self._recovering.start(Rig(*self._costmaps, self._base, frequency))
+            self._recovering.start(RecoveryContext(*self._costmaps, self._base, frequency))
         if self._recovering.step():
             self._recovering = None
             self._machine.recovered(rospy.get_time())

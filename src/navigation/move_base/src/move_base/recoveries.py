@@ -25,7 +25,7 @@ TOO_LONG = 2.0  # multiple of a drive's expected time after which it is given up
 
 
 @dataclass(frozen=True)
-class Rig:
+class RecoveryContext:
     """The parts that behaviours use. `frequency`: of their steps, Hz."""
 
     global_costmap: CostmapROS
@@ -49,9 +49,9 @@ class Recovery(ABC):
         """The parameters that it reads below its own name."""
         return table(self.TABLE)
 
-    def start(self, rig: Rig) -> None:
+    def start(self, context: RecoveryContext) -> None:
         """Begin; the robot stands."""
-        self.rig = rig
+        self.context = context
 
     @abstractmethod
     def step(self) -> bool:
@@ -65,8 +65,8 @@ class ClearCostmap(Recovery):
 
     def step(self) -> bool:
         values = self.values
-        maps = {"local": [self.rig.local_costmap], "global": [self.rig.global_costmap]}.get(
-            values["affected_maps"], [self.rig.global_costmap, self.rig.local_costmap])
+        maps = {"local": [self.context.local_costmap], "global": [self.context.global_costmap]}.get(
+            values["affected_maps"], [self.context.global_costmap, self.context.local_costmap])
         rospy.logwarn("Clearing %s costmap%s %sside a square (%.2fm) large centered on the robot.",
                       values["affected_maps"], "s" if len(maps) > 1 else "",
                       "in" if values["invert_area_to_clear"] else "out", values["reset_distance"])
@@ -94,31 +94,31 @@ class Rotate(Recovery):
         return [entry for entry in super().entries
                 if entry.name in ("sim_granularity", "frequency")]
 
-    def start(self, rig: Rig) -> None:
-        super().start(rig)
+    def start(self, context: RecoveryContext) -> None:
+        super().start(context)
         rospy.logwarn("Rotate recovery behavior started.")
         self._turned, self._yaw = 0.0, None
         slowest = max(self._settings.min_in_place_vel_theta, 0.05)
-        self._steps_left = int(TOO_LONG * 2 * np.pi / slowest * rig.frequency)
+        self._steps_left = int(TOO_LONG * 2 * np.pi / slowest * context.frequency)
 
     def step(self) -> bool:
-        pose = self.rig.local_costmap.robot_pose()
+        pose = self.context.local_costmap.robot_pose()
         if pose is None:
             return False
         if self._yaw is not None:
             self._turned += wrap_angle(pose[2] - self._yaw)
         self._yaw = pose[2]
-        command = recovery.rotation(self.rig.local_costmap.snapshot(),
-                                    self.rig.local_costmap.footprint, pose, self._turned,
+        command = recovery.rotation(self.context.local_costmap.snapshot(),
+                                    self.context.local_costmap.footprint, pose, self._turned,
                                     self._settings)
         self._steps_left -= 1
         if command is None:
             rospy.logerr("Rotate recovery can't rotate in place because there is a potential "
                          "collision.")
         if command is None or not command.omega or not self._steps_left:
-            self.rig.base.stop()
+            self.context.base.stop()
             return True
-        self.rig.base.drive(command.velocity)
+        self.context.base.drive(command.velocity)
         return False
 
 
@@ -128,11 +128,11 @@ class MoveSlowAndClear(Recovery):
     TABLE = "move_slow_and_clear"
 
     def step(self) -> bool:
-        values, rig = self.values, self.rig
+        values, context = self.values, self.context
         rospy.logwarn("Move slow and clear recovery behavior started.")
-        for costmap in (rig.global_costmap, rig.local_costmap):
+        for costmap in (context.global_costmap, context.local_costmap):
             costmap.clear_area(2 * values["clearing_distance"], None, True)
-        rig.base.limit(values["limited_trans_speed"], values["limited_rot_speed"],
+        context.base.limit(values["limited_trans_speed"], values["limited_rot_speed"],
                        values["limited_distance"])
         return True
 
@@ -142,12 +142,12 @@ class Escape(Recovery):
 
     TABLE = "escape_recovery"
 
-    def start(self, rig: Rig) -> None:
-        super().start(rig)
+    def start(self, context: RecoveryContext) -> None:
+        super().start(context)
         self._command: recovery.Command | None = None
 
     def step(self) -> bool:
-        costmap, pose = self.rig.local_costmap, self.rig.local_costmap.robot_pose()
+        costmap, pose = self.context.local_costmap, self.context.local_costmap.robot_pose()
         if pose is None:
             return False
         snapshot = costmap.snapshot()
@@ -158,16 +158,16 @@ class Escape(Recovery):
                 rospy.logerr("%s can't move: there is no room ahead or behind.", self.name)
                 return True
             self._steps_left = int(TOO_LONG * self.values["distance"] / self.values["speed"]
-                                   * self.rig.frequency)
+                                   * self.context.frequency)
         way = self._command.trajectory
         at = int(np.hypot(*(way[:, :2] - pose[:2]).T).argmin())
         outline = footprints.shrunk_to_fit(snapshot, costmap.footprint, pose)
         self._steps_left -= 1
         if (at == len(way) - 1 or not self._steps_left or outline is None
                 or (footprints.costs(snapshot, outline, way[at + 1:]) < 0).any()):
-            self.rig.base.stop()
+            self.context.base.stop()
             return True
-        self.rig.base.drive(self._command.velocity)
+        self.context.base.drive(self._command.velocity)
         return False
 
 
