@@ -10,8 +10,7 @@ from typing import Protocol
 from xml.etree.ElementTree import Element
 
 import yaml
-from car_control.motor import Drive as MotorCommand
-from car_control.motor import MotorSettings, controller_commands
+from car_control.motor import DriveCommand, MotorSettings, controller_commands
 from car_control.settings import load_settings
 
 from bullet_sim.control.controllers.diff_drive_controller import DiffDrive as ControllerDrive
@@ -144,7 +143,7 @@ class RacecarDrive(ControlledDrive):
         """m/s and rad of the bicycle's front wheel, within motor_control's bounds."""
         most = self._motor.max_speed, self._motor.max_steering_angle
         speed, turn = (max(-m, min(m, value)) for m, value in zip(most, (speed, turn), strict=True))
-        self._targets = controller_commands(self._motor, MotorCommand(speed, turn))
+        self._targets = controller_commands(self._motor, DriveCommand(speed, turn))
 
     def _update(self, _time: float, period: float) -> None:
         for name, servo in self._servos.items():
