@@ -1,8 +1,8 @@
 """Python runs this file at its start: it amends a few modules when a script imports them.
 
 cv2 gets its windows, Tk a line for want of a screen, some modules get the names that they had
-when a script was written, and rospy's subscribers say so when their simulator has ended. A second
-course's roslaunch ends with one line.
+when a script was written, and rospy's subscribers say so when their simulator has ended. A
+roslaunch that a program of ours refuses ends with one line.
 Programs of ours print in the language of the locale, and end at Ctrl-C without a traceback.
 """
 

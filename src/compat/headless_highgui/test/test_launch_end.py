@@ -1,4 +1,4 @@
-"""roslaunch ends by a refusal of empty_world.launch's guard alone; other faults stay its own."""
+"""roslaunch ends by a refusal of our programs alone; other faults stay its own."""
 
 from types import SimpleNamespace
 
@@ -11,7 +11,11 @@ GUARD = "/share/bullet_sim_ros/scripts/unless_running true"
 @pytest.mark.parametrize("command, code, ends", [
     (GUARD, "returned with code [1]", SystemExit),
     (GUARD, "no such command", ValueError),
+    ("/share/xacro/xacro /share/turtlebot3_wafle.urdf.xacro", "returned with code [3]", SystemExit),
+    ("rosrun xacro xacro.py turtlebot3_wafle.urdf.xacro", "returned with code [3]", SystemExit),
+    ("/share/xacro/xacro robot.xacro", "returned with code [2]", ValueError),
     ("xacro robot.xacro", "returned with code [1]", ValueError),
+    ("mine robot.xacro.txt", "returned with code [3]", ValueError),
     (None, "returned with code [1]", ValueError)])
 def test_only_a_refusal_ends_it(command, code, ends):
     class Loader:

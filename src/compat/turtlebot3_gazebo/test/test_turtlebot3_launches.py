@@ -211,3 +211,18 @@ def test_a_real_robot_is_a_clear_message(part):
     assert done.returncode == 1 and len(done.stderr.splitlines()) == 1
     assert f"turtlebot3_{part}.launch starts the motors and sensors" in done.stderr
     assert "roslaunch turtlebot3_gazebo turtlebot3_world.launch" in done.stderr
+
+
+@pytest.mark.parametrize("file", ["turtlebot3_world.launch", "somebodys.launch"])
+@pytest.mark.parametrize("language, said", [("en", "no such model"), ("zh_CN", "没有这个型号")])
+def test_an_unknown_model_ends_with_one_line(tmp_path, file, language, said):
+    (tmp_path / "somebodys.launch").write_text("""<launch>
+      <param name="robot" command="$(find xacro)/xacro.py
+        $(find turtlebot3_description)/urdf/turtlebot3_$(env TURTLEBOT3_MODEL).urdf.xacro"/>
+    </launch>""")
+    where = [tmp_path / file] if file == "somebodys.launch" else ["turtlebot3_gazebo", file]
+    typed = os.environ | {"TURTLEBOT3_MODEL": "wafle", "LC_ALL": "C.UTF-8", "LANGUAGE": language}
+    done = subprocess.run(["roslaunch", "--nodes", *where], env=typed, text=True, timeout=60,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    assert done.returncode == 1 and done.stdout.count("\n") == 1, done.stdout
+    assert said in done.stdout and done.stdout.endswith("burger, waffle, waffle_pi\n")

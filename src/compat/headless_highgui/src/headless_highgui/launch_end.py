@@ -1,6 +1,10 @@
-"""Ends a roslaunch that empty_world.launch's guard has refused, after the guard's one line."""
+"""Ends a roslaunch that a program of ours has refused, after that program's one line."""
 
-GUARD, REFUSED = "/unless_running ", "with code [1]"
+from pathlib import PurePath
+
+# A program that a <param>'s command runs, and the exit code by which it refuses the launch file:
+REFUSALS = {"unless_running": 1,  # bullet_sim_ros: the simulator runs already
+            "xacro": 3}  # there is no such TurtleBot3; 2 is any other mistake, which is roslaunch's
 
 
 def amend_loader(loader):
@@ -14,8 +18,14 @@ def amend_loader(loader):
         try:
             return value_of(self, *words)
         except ValueError as error:
-            if GUARD in str(words[-1]) and REFUSED in str(error):
+            if is_refusal(words[-1], str(error)):
                 raise SystemExit(1) from None
             raise
 
     loader.Loader.param_value = param_value
+
+
+def is_refusal(command, error):
+    """Whether a <param>'s command (None: it has none) ended with its code for a refusal."""
+    programs = {PurePath(word).stem for word in (command or "").split()}
+    return any(f"with code [{REFUSALS[name]}]" in error for name in programs & set(REFUSALS))
