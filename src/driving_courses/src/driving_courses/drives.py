@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from dataclasses import replace
 from pathlib import Path
@@ -14,10 +13,10 @@ from car_control.motor import DriveCommand, MotorSettings, controller_commands
 from car_control.settings import load_settings
 
 from bullet_sim.control.controllers.diff_drive_controller import DiffDrive as ControllerDrive
-from bullet_sim.control.controllers.diff_drive_controller import DiffDriveGeometry
-from bullet_sim.control.controllers.mobile_base import UNBOUNDED, BaseOptions, SpeedLimits
-from bullet_sim.control.controllers.servo import PositionServo, VelocityServo
-from bullet_sim.control.hardware import RobotHardware
+from bullet_sim.control.controllers.servo import TYPES as SERVOS
+from bullet_sim.control.controllers.servo import Servo
+from bullet_sim.control.hardware import open_hardware
+from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters, wheels_from_tags
 from bullet_sim.formats.urdf.facts import RobotFacts
@@ -67,15 +66,17 @@ class GazeboDiffDrive:
 
 
 class ControlledDrive(ABC):
-    """What ros_control does at each step: read, let controllers command, write."""
+    """What ros_control does at each step: read, let controllers command, write.
+
+    `parameters` are the controllers' in a YAML file, and may have limits and gains of joints.
+    """
 
     steers = False
 
-    def __init__(self, world: World, robot: Model, urdf: Element):
+    def __init__(self, world: World, robot: Model, urdf: Element,
+                 parameters: ControllerParameters):
         self._world, self._facts = world, RobotFacts(urdf)
-        transmissions = read_transmissions(urdf)
-        limits = {each.joint: self._facts.limits(each.joint) for each in transmissions}
-        self._hardware = RobotHardware(robot, transmissions, limits, {})
+        self._hardware = open_hardware(robot, self._facts, read_transmissions(urdf), parameters)
         world.each_step.append(self._step)
 
     def run(self, until: int) -> None:
@@ -94,21 +95,15 @@ class ControlledDrive(ABC):
 
 
 class DiffDriveController(ControlledDrive):
-    """diff_drive_controller with the parameters of a lesson's YAML file."""
+    """The file's diff_drive_controller."""
 
     def __init__(self, world: World, robot: Model, urdf: Element, settings: Path):
-        super().__init__(world, robot, urdf)
-        tables = yaml.safe_load(settings.read_text(encoding="utf-8")).values()
-        p = next(t for t in tables if t["type"] == "diff_drive_controller/DiffDriveController")
-        left, right, facts = p["left_wheel"], p["right_wheel"], self._facts
-        separation = p.get("wheel_separation") or math.dist(
-            facts.pose(left).position, facts.pose(right).position)
-        radius = p.get("wheel_radius") or facts.wheel_radius(left)
-        handles = ([self._hardware.command_handle("velocity", name)] for name in (left, right))
-        self._base = ControllerDrive(
-            *handles, DiffDriveGeometry(separation, radius, radius),
-            BaseOptions(_limits(p["linear"]["x"]), _limits(p["angular"]["z"]),
-                        p["cmd_vel_timeout"]))
+        parameters = _read(settings)
+        super().__init__(world, robot, urdf, parameters)
+        found = next(each for each in parameters.groups().values()
+                     if each.text("type", "") == "diff_drive_controller/DiffDriveController")
+        self._base = ControllerDrive.from_parameters(
+            found, self._facts, self._hardware.command_handle)
         self._base.start(world.time)
 
     def command(self, speed: float, turn: float) -> None:
@@ -125,19 +120,19 @@ class RacecarDrive(ControlledDrive):
     steers = True
 
     def __init__(self, world: World, robot: Model, urdf: Element, settings: Path):
-        super().__init__(world, robot, urdf)
-        tables = yaml.safe_load(settings.read_text(encoding="utf-8"))["racecar"]
-        self._servos = {name: self._servo(table) for name, table in tables.items()
-                        if "pid" in table}
+        parameters = _read(settings).group("racecar")
+        super().__init__(world, robot, urdf, parameters)
+        self._servos = {name: self._servo(found) for name, found in parameters.groups().items()
+                        if found.text("type", "") in SERVOS}
         self._motor = replace(load_settings(
             MotorSettings, find_file("car_control/config/car_control.yaml"), "motor_control"),
             ackermann=True)
         self.command(0.0, 0.0)
 
-    def _servo(self, table: dict) -> VelocityServo | PositionServo:
-        kind = VelocityServo if table["type"].endswith("VelocityController") else PositionServo
-        gains = {key: table["pid"][key] for key in ("p", "i", "d")}
-        return kind(self._hardware.command_handle("effort", table["joint"]), Pid(PidGains(**gains)))
+    def _servo(self, parameters: ControllerParameters) -> Servo:
+        interface, law, _ = SERVOS[parameters.text("type")]
+        return law(self._hardware.command_handle(interface, parameters.text("joint")),
+                   Pid(PidGains.from_parameters(parameters)))
 
     def command(self, speed: float, turn: float) -> None:
         """m/s and rad of the bicycle's front wheel, within motor_control's bounds."""
@@ -154,12 +149,6 @@ DRIVES = {"gazebo_diff_drive": GazeboDiffDrive, "diff_drive_controller": DiffDri
           "racecar": RacecarDrive}
 
 
-def _limits(table: dict) -> SpeedLimits:
-    """Of a speed, by diff_drive_controller's names."""
-    def bounds(quantity: str) -> tuple[float, float]:
-        if not table.get(f"has_{quantity}_limits"):
-            return UNBOUNDED
-        most = table[f"max_{quantity}"]
-        return table.get(f"min_{quantity}", -most), most
-
-    return SpeedLimits(bounds("velocity"), bounds("acceleration"), bounds("jerk"))
+def _read(settings: Path) -> ControllerParameters:
+    return ControllerParameters(
+        str(settings), yaml.safe_load(settings.read_text(encoding="utf-8")))

@@ -7,8 +7,8 @@ import pytest
 from std_msgs.msg import Float64, Float64MultiArray
 
 from bullet_sim.control.controllers.commands import Commands
+from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.errors import PluginError
-from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.controllers import command_topic
 
 

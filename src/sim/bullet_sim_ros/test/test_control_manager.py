@@ -6,10 +6,10 @@ import time
 import pytest
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
+from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.control.rate import Rate
 from bullet_sim.errors import PluginError
 from bullet_sim_ros.control import registry
-from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.manager import ControllerManager
 from bullet_sim_ros.control.switching import ManagerError
 

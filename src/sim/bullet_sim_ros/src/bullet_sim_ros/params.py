@@ -5,6 +5,7 @@ from typing import Any
 
 import rospy
 
+from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim_ros import names
 
 
@@ -54,6 +55,13 @@ def _number(name: str, default: float) -> float:
 def below(namespace: str) -> Any:
     """All parameters below a namespace, or the value of a parameter; None if there is nothing."""
     return rospy.get_param(namespace, None)
+
+
+def of_controllers(namespace: str) -> ControllerParameters:
+    """All parameters below an absolute namespace, read once."""
+    return ControllerParameters(
+        namespace, below(namespace),
+        "; was the controller's YAML file loaded there (rosparam load FILE {above})?")
 
 
 def find_upwards(namespace: str, name: str) -> str | None:

@@ -10,7 +10,7 @@ import pytest
 from geometry_msgs.msg import Twist, Vector3
 
 from bullet_sim.pose import Pose
-from bullet_sim_ros.control import mobile_base
+from bullet_sim_ros.control.controllers import mobile_bases
 from bullet_sim_ros.without_master import Graph
 
 LIMIT = 60.0  # s, wall, for controllers to start
@@ -226,7 +226,7 @@ def start_mecanum(bench, graph, text: str, meanwhile=lambda: None, **more):
 
 def test_a_driver_may_come_before_the_spawner_is_done(bench, graph, caplog, monkeypatch):
     # conforms: controllers/mecanum_drive_controller/MecanumDriveController
-    monkeypatch.setattr(mobile_base, "STARTING", 0.2)
+    monkeypatch.setattr(mobile_bases, "STARTING", 0.2)
     command, refusal = Twist(Vector3(0.3, 0, 0), Vector3()), "Controller is not running"
 
     def drive_already():

@@ -3,13 +3,16 @@
 The semantics are those of gazebo_ros_control's default_robot_hw_sim.cpp: one interface per joint.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.joint_motors import EffortMotor, make_motor
+from bullet_sim.control.joint_parameters import read_joint_gains, read_joint_limits
+from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.control.pid import PidGains
 from bullet_sim.description import JointLimits
 from bullet_sim.errors import SimulationError, UnknownName
+from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.joint import Joint
 from bullet_sim.model import Model
@@ -114,6 +117,17 @@ class RobotHardware:
             f"joint {joint!r} takes {handle.interface} commands, not {interface} commands, as its "
             f"transmission says; joints that take {interface} commands: "
             f"{', '.join(fitting) or 'none'}")
+
+
+def open_hardware(model: Model, robot: RobotFacts, transmissions: Sequence[Transmission],
+                  parameters: ControllerParameters) -> RobotHardware:
+    """A model's joints with the limits and gains of its URDF and of the parameters.
+
+    PluginError for a parameter of the wrong type, SimulationError for a joint that does not exist.
+    """
+    joints = [transmission.joint for transmission in transmissions]
+    return RobotHardware(model, transmissions, read_joint_limits(parameters, robot, joints),
+                         read_joint_gains(parameters, joints))
 
 
 def _joint(model: Model, name: str) -> Joint:

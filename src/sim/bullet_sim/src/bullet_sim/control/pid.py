@@ -1,7 +1,11 @@
 """A PID controller with a clamped integral, as control_toolbox's."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
+
+from bullet_sim.control.parameters import ControllerParameters
 
 
 @dataclass(frozen=True)
@@ -14,6 +18,21 @@ class PidGains:
     i_clamp_max: float = 0.0  # 0 together with i_clamp_min: the integral has no effect
     i_clamp_min: float = 0.0
     antiwindup: bool = False  # clamp the integral of the error itself, not only its term
+
+    @classmethod
+    def from_parameters(cls, parameters: ControllerParameters, group: str = "pid") -> PidGains:
+        """The gains in a group of parameters, of which only p is required."""
+        def number(name: str, default: float = 0.0) -> float:
+            return parameters.number(f"{group}/{name}", default)
+
+        p = parameters.number(f"{group}/p")
+        clamp = abs(number("i_clamp"))
+        return cls(
+            p, number("i"), number("d"),
+            i_clamp_max=abs(number("i_clamp_max", clamp)),
+            i_clamp_min=-abs(number("i_clamp_min", clamp)),
+            antiwindup=parameters.flag(f"{group}/antiwindup", False),
+        )
 
 
 class Pid:

@@ -9,10 +9,14 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from bullet_sim.control.controllers.mobile_base import read_distance
 from bullet_sim.control.handles import CommandHandle, JointHandle
 from bullet_sim.control.hardware import RobotHardware
+from bullet_sim.control.joint_parameters import read_joint_limits
+from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.description import JointLimits
 from bullet_sim.errors import check_lengths
+from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim.formats.urdf.transmission import Transmission
 from bullet_sim.model import Model
 
@@ -105,3 +109,22 @@ class SteerBotHardware(RobotHardware):
         for real, angle in zip(self._front, self._geometry.angles(middle), strict=True):
             real.command = angle
         super().write(period)
+
+
+def open_steer_bot(model: Model, robot: RobotFacts,
+                   parameters: ControllerParameters) -> SteerBotHardware:
+    """Reads the parameters of steer_bot_hardware_gazebo.cpp, initSim, or lengths from the URDF.
+
+    PluginError if a parameter is missing or of the wrong type; SimulationError if a joint does not
+    exist.
+    """
+    p = parameters.group("steer_bot_hardware_gazebo")
+    wheels, steers = (p.pair(name, "there must be two, the right and the left one")
+                      for name in ("virtual_rear_wheels", "virtual_front_steers"))
+    geometry = SteerBotGeometry(
+        read_distance(p, robot, "wheel_separation_w", steers[0], steers[1], axis=1),
+        read_distance(p, robot, "wheel_separation_h", wheels[0], steers[0], axis=0),
+        p.flag("enable_ackermann_link", True))
+    return SteerBotHardware(
+        model, p.text("rear_wheel"), p.text("front_steer"), wheels, steers, geometry,
+        read_joint_limits(parameters, robot, [*wheels, *steers]))

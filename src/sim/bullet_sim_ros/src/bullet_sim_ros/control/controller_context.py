@@ -9,9 +9,8 @@ from bullet_sim.control.hardware import RobotHardware
 from bullet_sim.control.rate import Rate
 from bullet_sim.errors import PluginError
 from bullet_sim.formats.urdf.facts import RobotFacts
-from bullet_sim_ros import names
+from bullet_sim_ros import names, params
 from bullet_sim_ros.control.actions import LoopActionServer
-from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.plugin_host import PluginContext
 
 
@@ -34,7 +33,7 @@ class ControllerContext:
         self.name = name
         self.manager_namespace = manager_namespace  # absolute, /racecar
         self.namespace = names.join(manager_namespace, name)  # absolute, /racecar/<controller>
-        self.parameters = ControllerParameters(self.namespace)
+        self.parameters = params.of_controllers(self.namespace)
         self.joints: dict[str, JointHandle] = hardware.joints
         self.robot = robot  # the URDF's facts
         self.claims: dict[str, CommandHandle] = {}  # by joint name

@@ -9,7 +9,6 @@ from rospy import Duration
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.reconfigure_server import Owner, Value, offer_values
 
 RANGES = {"p": (-1e5, 1e5, "Proportional gain"), "i": (-1e5, 1e5, "Integral gain"),
@@ -25,24 +24,9 @@ def offer_gains(owner: Owner, namespace: str, gains: PidGains,
     offer_values(owner, namespace, values, lambda new: change(PidGains(**new)))
 
 
-def read_gains(parameters: ControllerParameters, group: str = "pid") -> PidGains:
-    """The gains in a group of parameters, of which only p is required."""
-    def number(name: str, default: float = 0.0) -> float:
-        return parameters.number(f"{group}/{name}", default)
-
-    p = parameters.number(f"{group}/p")
-    clamp = abs(number("i_clamp"))
-    return PidGains(
-        p, number("i"), number("d"),
-        i_clamp_max=abs(number("i_clamp_max", clamp)),
-        i_clamp_min=-abs(number("i_clamp_min", clamp)),
-        antiwindup=parameters.flag(f"{group}/antiwindup", False),
-    )
-
-
 def open_pid(context: ControllerContext, group: str = "pid") -> Pid:
     """A PID with the gains of a group of parameters, which dynamic_reconfigure can change."""
-    pid = Pid(read_gains(context.parameters, group))
+    pid = Pid(PidGains.from_parameters(context.parameters, group))
 
     def change(gains: PidGains) -> None:
         def set_gains() -> None:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from control_msgs.msg import FollowJointTrajectoryGoal, JointTolerance
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.control.trajectory.follower import TrajectoryFollower
 from bullet_sim.control.trajectory.path import Waypoint
 from bullet_sim.control.trajectory.request import (
@@ -16,7 +17,6 @@ from bullet_sim.control.trajectory.request import (
     chosen,
 )
 from bullet_sim_ros import convert
-from bullet_sim_ros.control.controller_parameters import ControllerParameters
 
 
 def request_from_msg(msg: JointTrajectory) -> TrajectoryRequest:

@@ -2,10 +2,10 @@
 
 import logging
 
+from bullet_sim.control.joint_parameters import GAINS, read_joint_gains
 from bullet_sim.control.pid import Pid
 from bullet_sim.mechanisms.mimic import MimicJoint, MimicParameters
-from bullet_sim_ros import names
-from bullet_sim_ros.control.joint_parameters import GAINS, read_joint_gains
+from bullet_sim_ros import names, params
 from bullet_sim_ros.plugin_host import PluginContext, plugin
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -37,7 +37,7 @@ class MimicJointPlugin:
         if not p.has("hasPID") or not p.flag("hasPID", True):
             return None
         namespace = p.namespace(missing="/", empty="/")
-        gains = read_joint_gains(namespace, [joint])
+        gains = read_joint_gains(params.of_controllers(names.join(namespace, "")), [joint])
         if joint not in gains:
             where = names.join(namespace, f"{GAINS}/{joint}")
             log.warning("%s: <hasPID>, but there is no parameter %s/p: the joint is held without",

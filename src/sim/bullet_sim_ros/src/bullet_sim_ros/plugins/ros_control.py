@@ -7,17 +7,16 @@ from xml.etree.ElementTree import Element, fromstring
 import rospy
 from std_msgs.msg import Bool
 
-from bullet_sim.control.hardware import RobotHardware
+from bullet_sim.control.hardware import RobotHardware, open_hardware
+from bullet_sim.control.steer_bot import open_steer_bot
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim.formats.urdf.transmission import read_transmissions
 from bullet_sim.formats.xml_values import parse_xml
-from bullet_sim_ros import names
+from bullet_sim_ros import names, params
 from bullet_sim_ros.control import controllers, services  # noqa: F401  (controllers register)
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.joint_parameters import read_joint_gains, read_joint_limits
 from bullet_sim_ros.control.manager import ControllerManager
-from bullet_sim_ros.control.steer_bot import open_steer_bot
 from bullet_sim_ros.control.urdf_parameter import with_urdf
 from bullet_sim_ros.plugin_host import PluginContext, plugin
 
@@ -95,17 +94,14 @@ class RosControlPlugin:
     def _open_hardware(self, urdf: str) -> tuple[RobotHardware, RobotFacts]:
         element = self._urdf(urdf)
         robot = RobotFacts(element)
+        parameters = params.of_controllers(self._namespace)
         if self._steer_bot:
-            return open_steer_bot(self._context.model, self._namespace, robot), robot
+            return open_steer_bot(self._context.model, robot, parameters), robot
         transmissions = read_transmissions(element)
         if not transmissions and element is not NO_ROBOT:
             log.warning("%s: the URDF has no usable <transmission>, so there is no joint to "
                         "control", self._context.describe())
-        joints = [transmission.joint for transmission in transmissions]
-        hardware = RobotHardware(self._context.model, transmissions,
-                                 read_joint_limits(self._namespace, robot, joints),
-                                 read_joint_gains(self._namespace, joints))
-        return hardware, robot
+        return open_hardware(self._context.model, robot, transmissions, parameters), robot
 
     def _urdf(self, text: str) -> Element:
         """The `<robot>`; one without joints if the text is an SDF or empty."""

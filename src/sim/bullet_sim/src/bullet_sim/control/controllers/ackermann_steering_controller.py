@@ -1,11 +1,21 @@
 """Ackermann steering as a bicycle: one driven rear wheel, one steered front wheel."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass
 
-from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
+from bullet_sim.control.controllers.mobile_base import (
+    BaseOptions,
+    Claim,
+    MobileBase,
+    read_distance,
+    read_wheel_radius,
+)
 from bullet_sim.control.handles import CommandHandle
+from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.errors import check_lengths
+from bullet_sim.formats.urdf.facts import RobotFacts
 
 
 @dataclass(frozen=True)
@@ -32,6 +42,20 @@ class AckermannSteering(MobileBase):
         self._rear_wheel, self._front_steer = rear_wheel, front_steer
         self._geometry = geometry
         self._travelled = 0.0
+
+    @classmethod
+    def from_parameters(cls, p: ControllerParameters, robot: RobotFacts, claim: Claim
+                        ) -> AckermannSteering:
+        """Of ackermann_steering_controller."""
+        rear = p.text("rear_wheel", "rear_wheel_joint")
+        front = p.text("front_steer", "front_steer_joint")
+        handles = claim("velocity", rear), claim("position", front)
+        wheelbase = read_distance(p, robot, "wheel_separation_h", rear, front)
+        radius = read_wheel_radius(p, robot, rear)
+        return cls(*handles, AckermannGeometry(
+            wheelbase * p.number("wheel_separation_h_multiplier", 1.0),
+            radius * p.number("wheel_radius_multiplier", 1.0),
+            p.number("steer_pos_multiplier", 1.0)), BaseOptions.from_parameters(p))
 
     def _drive(self, forward: float, turning: float) -> None:
         self._rear_wheel.command = forward / self._geometry.wheel_radius

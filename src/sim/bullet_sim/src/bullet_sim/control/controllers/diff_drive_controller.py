@@ -1,16 +1,26 @@
 """Differential drive: wheels on two sides, turned by the difference of their speeds."""
 
-from collections.abc import Sequence
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
+from bullet_sim.control.controllers.mobile_base import (
+    BaseOptions,
+    Claim,
+    MobileBase,
+    read_distance,
+    read_wheel_radius,
+)
 from bullet_sim.control.handles import CommandHandle
-from bullet_sim.errors import check_lengths
+from bullet_sim.control.parameters import ControllerParameters
+from bullet_sim.errors import PluginError, check_lengths
+from bullet_sim.formats.urdf.facts import RobotFacts
 
 
 @dataclass(frozen=True)
 class DiffDriveGeometry:
-    """Lengths in m, with multipliers applied."""
+    """Lengths in m."""
 
     wheel_separation: float
     left_radius: float
@@ -27,8 +37,39 @@ class DiffDrive(MobileBase):
                  geometry: DiffDriveGeometry, options: BaseOptions):
         super().__init__(options)
         self.left, self.right = tuple(left), tuple(right)
-        self.geometry = geometry  # may be replaced at any time
+        self._measured = self.geometry = geometry
+        self.multipliers: Mapping[str, float] = {}
         self._travelled = (0.0, 0.0)
+
+    @classmethod
+    def from_parameters(cls, p: ControllerParameters, robot: RobotFacts, claim: Claim) -> DiffDrive:
+        """Of diff_drive_controller; the first wheel of each side stands for the others."""
+        left, right = p.texts("left_wheel"), p.texts("right_wheel")
+        if len(left) != len(right):
+            raise PluginError(f"left_wheel has {len(left)} joints and right_wheel {len(right)}; "
+                              "they must be as many")
+        separation = read_distance(p, robot, "wheel_separation", left[0], right[0])
+        radius = read_wheel_radius(p, robot, left[0])
+        drive = cls([claim("velocity", name) for name in left],
+                    [claim("velocity", name) for name in right],
+                    DiffDriveGeometry(separation, radius, radius), BaseOptions.from_parameters(p))
+        both = p.number("wheel_radius_multiplier", 1.0)
+        drive.multiply({
+            "left_wheel_radius_multiplier": p.number("left_wheel_radius_multiplier", both),
+            "right_wheel_radius_multiplier": p.number("right_wheel_radius_multiplier", both),
+            "wheel_separation_multiplier": p.number("wheel_separation_multiplier", 1.0)})
+        return drive
+
+    def multiply(self, multipliers: Mapping[str, float]) -> None:
+        """Set the factors on the lengths, by their parameters' names; at any time.
+
+        SimulationError for one that is not above 0.
+        """
+        self.multipliers, g = multipliers, self._measured
+        self.geometry = DiffDriveGeometry(
+            g.wheel_separation * multipliers["wheel_separation_multiplier"],
+            g.left_radius * multipliers["left_wheel_radius_multiplier"],
+            g.right_radius * multipliers["right_wheel_radius_multiplier"])
 
     def wheel_speeds(self, forward: float, turning: float) -> tuple[float, float]:
         """Speeds of the left and of the right wheels, rad/s."""

@@ -1,13 +1,23 @@
 """Four wheels, each driven and steered, without slip: all turn about one point."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from bullet_sim.control.controllers.commands import TimedCommand
-from bullet_sim.control.controllers.mobile_base import BaseOptions, MobileBase
+from bullet_sim.control.controllers.mobile_base import (
+    BaseOptions,
+    Claim,
+    MobileBase,
+    read_distance,
+    read_wheel_radius,
+)
 from bullet_sim.control.handles import CommandHandle
+from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.errors import check_lengths
+from bullet_sim.formats.urdf.facts import RobotFacts
 
 # m/s; below this speed the wheels stop (four_wheel_steering_controller.cpp, updateCommand)
 CRAWL = 1e-3
@@ -45,6 +55,22 @@ class FourWheelSteering(MobileBase):
         self._axles = TimedCommand(3, options.command_timeout)
         self._now = 0.0
         self._last_motion = 0.0
+
+    @classmethod
+    def from_parameters(cls, p: ControllerParameters, robot: RobotFacts, claim: Claim
+                        ) -> FourWheelSteering:
+        """Of four_wheel_steering_controller."""
+        wheels, steering = (
+            [name for axle in ("front", "rear")
+             for name in p.pair(f"{axle}_{kind}", "an axle has two, left and right")]
+            for kind in ("wheel", "steering"))
+        return cls(
+            [claim("velocity", name) for name in wheels],
+            [claim("position", name) for name in steering],
+            FourWheelGeometry(read_distance(p, robot, "track", steering[0], steering[1]),
+                              read_distance(p, robot, "wheel_base", wheels[0], wheels[2]),
+                              read_wheel_radius(p, robot, wheels[0])),
+            BaseOptions.from_parameters(p))
 
     def command_axles(self, time: float, forward: float, front: float, rear: float) -> None:
         """Command the speed (m/s) and the steering angles (rad) of the front and the rear axle."""

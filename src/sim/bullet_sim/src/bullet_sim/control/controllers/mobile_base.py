@@ -1,13 +1,21 @@
 """The common part of mobile bases: a command with a time-out, limits, and odometry."""
 
+from __future__ import annotations
+
 import math
 from abc import ABC, abstractmethod
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from bullet_sim.control.controllers.commands import TimedCommand
+from bullet_sim.control.handles import CommandHandle
+from bullet_sim.control.parameters import ControllerParameters
+from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim.pose import Pose, quaternion_from_rpy
 from bullet_sim.sensors.odometry import OdometryReading
+
+Claim = Callable[[str, str], CommandHandle]  # of an interface and a joint
 
 UNBOUNDED = (float("-inf"), float("inf"))
 
@@ -19,6 +27,17 @@ class SpeedLimits:
     velocity: tuple[float, float] = UNBOUNDED
     acceleration: tuple[float, float] = UNBOUNDED  # per s
     jerk: tuple[float, float] = UNBOUNDED  # per s^2
+
+    @classmethod
+    def from_parameters(cls, parameters: ControllerParameters, group: str) -> SpeedLimits:
+        """The limits of one speed, from a group of parameters such as `linear/x`."""
+        def bounds(quantity: str) -> tuple[float, float]:
+            if not parameters.flag(f"{group}/has_{quantity}_limits", False):
+                return UNBOUNDED
+            greatest = parameters.number(f"{group}/max_{quantity}", 0.0)
+            return parameters.number(f"{group}/min_{quantity}", -greatest), greatest
+
+        return cls(bounds("velocity"), bounds("acceleration"), bounds("jerk"))
 
 
 UNLIMITED = SpeedLimits()
@@ -126,6 +145,30 @@ class BaseOptions:
     velocity_window: int = 10  # control periods over which the published speeds are averaged
     open_loop: bool = False  # odometry follows the commands instead of the wheels
 
+    @classmethod
+    def from_parameters(cls, parameters: ControllerParameters) -> BaseOptions:
+        """Read the parameters that all bases share."""
+        return cls(
+            SpeedLimits.from_parameters(parameters, "linear/x"),
+            SpeedLimits.from_parameters(parameters, "angular/z"),
+            parameters.number("cmd_vel_timeout", 0.5),
+            round(parameters.number("velocity_rolling_window_size", 10)),
+            parameters.flag("open_loop", False))
+
+
+def read_distance(p: ControllerParameters, robot: RobotFacts, name: str, first: str, second: str,
+                  axis: int | None = None) -> float:
+    """A parameter, else the distance of two joints, m; with `axis` (0: x, 1: y) along that axis."""
+    if p.has(name):
+        return p.number(name)
+    one, other = robot.pose(first).position, robot.pose(second).position
+    return math.dist(one, other) if axis is None else abs(one[axis] - other[axis])
+
+
+def read_wheel_radius(p: ControllerParameters, robot: RobotFacts, joint: str) -> float:
+    """The parameter `wheel_radius`, else the radius of the wheel on a joint, m."""
+    return p.number("wheel_radius") if p.has("wheel_radius") else robot.wheel_radius(joint)
+
 
 class MobileBase(ABC):
     """Turns (forward, turning) into wheel commands each control period; keeps the odometry."""
@@ -138,6 +181,16 @@ class MobileBase(ABC):
         self.odometry = PlanarOdometry(options.velocity_window)
         self.wanted = (0.0, 0.0)  # before limiting
         self.limited = (0.0, 0.0)
+
+    @classmethod
+    @abstractmethod
+    def from_parameters(cls, p: ControllerParameters, robot: RobotFacts, claim: Claim
+                        ) -> MobileBase:
+        """From a controller's parameters; lengths that they lack are those of the URDF.
+
+        PluginError for a parameter that is missing or of the wrong type, SimulationError for a
+        joint that cannot be claimed, or a length of 0.
+        """
 
     def command(self, time: float, forward: float, turning: float) -> None:
         """Command from now (s, simulated) on: m/s, and the drive's unit of turning."""

@@ -78,6 +78,14 @@ class PositionServo(Servo):
         self.output = self.handle.command = self.pid.compute(self.error, period)
 
 
+TYPES: dict[str, tuple[str, type[Servo], bool]] = {  # interface, control law, is group
+    "effort_controllers/JointPositionController": ("effort", PositionServo, False),
+    "effort_controllers/JointVelocityController": ("effort", VelocityServo, False),
+    "velocity_controllers/JointPositionController": ("velocity", PositionServo, False),
+    "effort_controllers/JointGroupPositionController": ("effort", PositionServo, True),
+}
+
+
 class Servos:
     """One target per joint. A velocity falls back to 0 after a time-out, a position is held."""
 

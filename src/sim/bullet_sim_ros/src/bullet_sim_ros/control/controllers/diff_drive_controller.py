@@ -7,16 +7,10 @@ from control_msgs.msg import JointTrajectoryControllerState
 from geometry_msgs.msg import TwistStamped
 from trajectory_msgs.msg import JointTrajectoryPoint
 
-from bullet_sim.control.controllers.diff_drive_controller import DiffDrive, DiffDriveGeometry
-from bullet_sim.errors import PluginError
+from bullet_sim.control.controllers.diff_drive_controller import DiffDrive
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.mobile_base import (
-    MobileBaseController,
-    read_distance,
-    read_options,
-    read_wheel_radius,
-)
+from bullet_sim_ros.control.controllers.mobile_bases import MobileBaseController
 from bullet_sim_ros.control.registry import controller
 from bullet_sim_ros.reconfigure_server import Value, offer_values
 
@@ -26,30 +20,18 @@ RATES = (0.0, 2000.0)  # Hz
 
 @controller("diff_drive_controller/DiffDriveController")
 class DiffDriveController(MobileBaseController):
-    """Separation and radius come from parameters, else from the first wheel of each side."""
+    """Multipliers of separation and radii can be changed by dynamic_reconfigure."""
+
+    law = DiffDrive
 
     def __init__(self, context: ControllerContext):
+        super().__init__(context)
         p = context.parameters
-        left, right = p.texts("left_wheel"), p.texts("right_wheel")
-        if len(left) != len(right):
-            raise PluginError(f"left_wheel has {len(left)} joints and right_wheel {len(right)}; "
-                              "they must be as many")
-        self._separation = read_distance(p, context.robot, "wheel_separation", left[0], right[0])
-        self._radius = read_wheel_radius(p, context.robot, left[0])
-        radius = p.number("wheel_radius_multiplier", 1.0)
-        multipliers = {
-            "left_wheel_radius_multiplier": p.number("left_wheel_radius_multiplier", radius),
-            "right_wheel_radius_multiplier": p.number("right_wheel_radius_multiplier", radius),
-            "wheel_separation_multiplier": p.number("wheel_separation_multiplier", 1.0)}
-        self._drive = DiffDrive([context.claim("velocity", name) for name in left],
-                                [context.claim("velocity", name) for name in right],
-                                self._geometry(multipliers), read_options(p))
-        super().__init__(context, self._drive)
         self._limited = context.advertise("cmd_vel_out", TwistStamped, queue_size=100) if p.flag(
             "publish_cmd", False) else None
-        self._wheels = WheelStates(context, self._drive) if p.flag(
+        self._wheels = WheelStates(context, self.base) if p.flag(
             "publish_wheel_joint_controller_state", False) else None
-        self._offer_changes(multipliers)
+        self._offer_changes()
 
     def update(self, time: float, period: float) -> None:
         """Drive; also publish the limited command and the wheels' state.
@@ -60,21 +42,16 @@ class DiffDriveController(MobileBaseController):
         if self._limited and self._limited.get_num_connections():
             msg = TwistStamped()
             convert.stamped(msg, time)
-            msg.twist.linear.x, msg.twist.angular.z = self._drive.limited
+            msg.twist.linear.x, msg.twist.angular.z = self.base.limited
             self._limited.publish(msg)
         if self._wheels:
             self._wheels.update(time, period)
 
-    def _geometry(self, multipliers: Mapping[str, float]) -> DiffDriveGeometry:
-        return DiffDriveGeometry(self._separation * multipliers["wheel_separation_multiplier"],
-                                 self._radius * multipliers["left_wheel_radius_multiplier"],
-                                 self._radius * multipliers["right_wheel_radius_multiplier"])
-
-    def _offer_changes(self, multipliers: Mapping[str, float]) -> None:
+    def _offer_changes(self) -> None:
         """Offer dynamic_reconfigure, with names and ranges of DiffDriveController.cfg."""
         context = self.context
         values = {name: Value(now, *MULTIPLIERS, name.replace("_", " "))
-                  for name, now in multipliers.items()}
+                  for name, now in self.base.multipliers.items()}
         values["publish_rate"] = Value(context.parameters.number("publish_rate", 50.0), *RATES,
                                        "odometry and transforms a second")
         values["enable_odom_tf"] = Value(
@@ -83,7 +60,7 @@ class DiffDriveController(MobileBaseController):
                      lambda new: context.mailbox.post(lambda: self._change(new)))
 
     def _change(self, values: Mapping[str, float | bool]) -> None:
-        self._drive.geometry = self._geometry(values)
+        self.base.multiply({name: values[name] for name in self.base.multipliers})
         self.odometry.set_transform(values["enable_odom_tf"])
         self.set_publish_rate(values["publish_rate"])
 

@@ -6,11 +6,11 @@ from actionlib import ServerGoalHandle
 from control_msgs.msg import GripperCommandAction, GripperCommandFeedback, GripperCommandResult
 
 from bullet_sim.control.controllers import gripper
+from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.control.rate import Rate
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.actions import GoalSlot
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.controller_parameters import ControllerParameters
 from bullet_sim_ros.control.pid import open_pid
 from bullet_sim_ros.control.registry import Controller, controller
 

@@ -2,7 +2,7 @@
 
 from control_msgs.msg import JointControllerState
 
-from bullet_sim.control.controllers.servo import PositionServo, Servo, Servos, VelocityServo
+from bullet_sim.control.controllers.servo import TYPES, PositionServo, Servo, Servos
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controllers.command_topic import command_timeout, subscribe
@@ -10,12 +10,6 @@ from bullet_sim_ros.control.pid import PidTopic, open_pid
 from bullet_sim_ros.control.registry import Controller, controller
 
 STATE_EVERY = 10  # updates
-TYPES: dict[str, tuple[str, type[Servo], bool]] = {  # interface, control law, is group
-    "effort_controllers/JointPositionController": ("effort", PositionServo, False),
-    "effort_controllers/JointVelocityController": ("effort", VelocityServo, False),
-    "velocity_controllers/JointPositionController": ("velocity", PositionServo, False),
-    "effort_controllers/JointGroupPositionController": ("effort", PositionServo, True),
-}
 
 
 @controller(*TYPES)

@@ -1,24 +1,39 @@
-"""Reads the parameters of one controller, with errors that name the parameter."""
+"""Reads the parameters of a controller or of joints, with errors that name the parameter."""
+
+from __future__ import annotations
 
 import math
 from typing import Any
 
 from bullet_sim.errors import PluginError
-from bullet_sim_ros import names, params
 
 REQUIRED = object()  # stands for: there is no default
 
 
 class ControllerParameters:
-    """All parameters below a namespace, read once. Names may be paths such as `pid/p`.
+    """All parameters below a namespace. Names may be paths such as `pid/p`.
 
     A parameter of the wrong type, or not set and without a default, is a PluginError.
     """
 
-    def __init__(self, namespace: str, values: Any = REQUIRED):
+    def __init__(self, namespace: str, values: Any, remedy: str = ""):
+        """`values`: a tree of dictionaries, as YAML has it; anything else stands for none.
+
+        `remedy` ends the error of a parameter that is not set; `{above}` in it is the namespace
+        around this one.
+        """
         self.namespace = namespace
-        found = params.below(namespace) if values is REQUIRED else values
-        self._values = found if isinstance(found, dict) else {}
+        self._values = values if isinstance(values, dict) else {}
+        self._remedy = remedy
+
+    def group(self, name: str) -> ControllerParameters:
+        """The parameters below a name; none if it is not set."""
+        return ControllerParameters(self.where(name), self._find(name), self._remedy)
+
+    def groups(self) -> dict[str, ControllerParameters]:
+        """All groups by name, such as the controllers of a file, in its order."""
+        return {name: self.group(name) for name, value in self._values.items()
+                if isinstance(value, dict)}
 
     def has(self, name: str) -> bool:
         """Whether a parameter or a group of this name is set."""
@@ -30,9 +45,8 @@ class ControllerParameters:
         if found is not None:
             return found
         if default is REQUIRED:
-            above = self.namespace.rpartition("/")[0] or "/"
-            raise PluginError(f"parameter {self.where(name)} is not set; was the controller's YAML "
-                              f"file loaded there (rosparam load FILE {above})?")
+            remedy = self._remedy.format(above=self.namespace.rpartition("/")[0] or "/")
+            raise PluginError(f"parameter {self.where(name)} is not set{remedy}")
         return default
 
     def text(self, name: str, default: Any = REQUIRED) -> str:
@@ -76,7 +90,7 @@ class ControllerParameters:
 
     def where(self, name: str) -> str:
         """The parameter's full name."""
-        return names.join(self.namespace, name)
+        return f"{self.namespace.rstrip('/')}/{name}"
 
     def _checked(self, name: str, default: Any, good, what: str) -> Any:
         found = self.value(name, default)

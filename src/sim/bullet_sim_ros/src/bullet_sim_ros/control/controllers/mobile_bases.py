@@ -1,42 +1,24 @@
-"""Common to the controllers of mobile bases: cmd_vel in, odometry and tf out, parameters."""
+"""The controllers of mobile bases: cmd_vel in, odometry and tf out."""
 
 import logging
-import math
 from collections.abc import Callable
 
 import rospy
 from geometry_msgs.msg import Twist
+from roslib.message import get_message_class
 
-from bullet_sim.control.controllers.mobile_base import (
-    UNBOUNDED,
-    BaseOptions,
-    MobileBase,
-    SpeedLimits,
-)
+from bullet_sim.control.controllers.ackermann_steering_controller import AckermannSteering
+from bullet_sim.control.controllers.four_wheel_steering_controller import FourWheelSteering
+from bullet_sim.control.controllers.mecanum_drive_controller import MecanumDrive
+from bullet_sim.control.controllers.mobile_base import MobileBase
 from bullet_sim.control.rate import Rate
-from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.controller_parameters import ControllerParameters
-from bullet_sim_ros.control.registry import Controller
+from bullet_sim_ros.control.registry import Controller, controller
 from bullet_sim_ros.plugin_host.drive_topics import OdometryOutput
 
-
-def read_distance(p: ControllerParameters, robot: RobotFacts, name: str, first: str, second: str,
-                  axis: int | None = None) -> float:
-    """A parameter, else the distance of two joints, m; with `axis` (0: x, 1: y) along that axis."""
-    if p.has(name):
-        return p.number(name)
-    one, other = robot.pose(first).position, robot.pose(second).position
-    return math.dist(one, other) if axis is None else abs(one[axis] - other[axis])
-
-
-def read_wheel_radius(p: ControllerParameters, robot: RobotFacts, joint: str) -> float:
-    """The parameter `wheel_radius`, else the radius of the wheel on a joint, m."""
-    return p.number("wheel_radius") if p.has("wheel_radius") else robot.wheel_radius(joint)
-
-
 STARTING = 5.0  # s of simulated time from loading, in which a spawner starts the controller
+AXLES_MESSAGE = "four_wheel_steering_msgs/FourWheelSteering"
 
 log = logging.getLogger("bullet_sim.control")
 
@@ -44,10 +26,12 @@ log = logging.getLogger("bullet_sim.control")
 class MobileBaseController(Controller):
     """Accepts commands only while it runs; odometry starts at zero when it is loaded."""
 
-    def __init__(self, context: ControllerContext, base: MobileBase):
+    law: type[MobileBase]
+
+    def __init__(self, context: ControllerContext):
         super().__init__(context)
         p = context.parameters
-        self.base = base
+        self.base = self.law.from_parameters(p, context.robot, context.claim)
         self.set_publish_rate(p.number("publish_rate", 50.0))
         self._running = False
         self._was_running, self._loaded = False, context.world_time()
@@ -123,21 +107,54 @@ class MobileBaseController(Controller):
         self.base.command(self.context.world_time(), msg.linear.x, msg.angular.z)
 
 
-def read_options(parameters: ControllerParameters) -> BaseOptions:
-    """Read the parameters that all bases share."""
-    return BaseOptions(
-        read_limits(parameters, "linear/x"), read_limits(parameters, "angular/z"),
-        parameters.number("cmd_vel_timeout", 0.5),
-        round(parameters.number("velocity_rolling_window_size", 10)),
-        parameters.flag("open_loop", False))
+@controller("ackermann_steering_controller/AckermannSteeringController",
+            "steer_drive_controller/SteerDriveController")
+class AckermannSteeringController(MobileBaseController):
+    """angular.z of cmd_vel is the steering joint's angle, rad.
+
+    So it is in ackermann_steering_controller.cpp, AckermannSteeringController::update.
+    steer_drive_controller is the older name in ros_controllers, with the same parameters.
+    """
+
+    law = AckermannSteering
 
 
-def read_limits(parameters: ControllerParameters, group: str) -> SpeedLimits:
-    """The limits of one speed, from a group of parameters such as `linear/x`."""
-    def bounds(quantity: str) -> tuple[float, float]:
-        if not parameters.flag(f"{group}/has_{quantity}_limits", False):
-            return UNBOUNDED
-        greatest = parameters.number(f"{group}/max_{quantity}", 0.0)
-        return parameters.number(f"{group}/min_{quantity}", -greatest), greatest
+@controller("mecanum_drive_controller/MecanumDriveController")
+class MecanumDriveController(MobileBaseController):
+    """cmd_vel's linear.y is the speed to the left."""
 
-    return SpeedLimits(bounds("velocity"), bounds("acceleration"), bounds("jerk"))
+    law = MecanumDrive
+
+    def __init__(self, context: ControllerContext):
+        super().__init__(context)
+        if not all(context.robot.joints_on(wheel.joint.name) for wheel in self.base.wheels):
+            log.warning("%s: its wheels have no rollers (links on passive joints), so they drive "
+                        "forward and turn, but do not go sideways; a base without rollers is moved "
+                        "by libgazebo_ros_planar_move.so", context.describe())
+
+    def apply_command(self, msg: Twist) -> None:
+        """Pass a checked command to the drive; in the loop."""
+        self.base.command(self.context.world_time(), msg.linear.x, msg.angular.z, msg.linear.y)
+
+
+@controller("four_wheel_steering_controller/FourWheelSteeringController")
+class FourWheelSteeringController(MobileBaseController):
+    """Takes cmd_vel, and cmd_four_wheel_steering if its message's package is installed."""
+
+    law = FourWheelSteering
+
+    def __init__(self, context: ControllerContext):
+        super().__init__(context)
+        message = get_message_class(AXLES_MESSAGE)
+        if message is None:
+            log.warning("%s: no package has %s, so cmd_four_wheel_steering is not there; cmd_vel "
+                        "is", context.describe(), AXLES_MESSAGE)
+        else:
+            self.subscribe("cmd_four_wheel_steering", message, self._take_axles)
+
+    def _take_axles(self, msg) -> Callable[[], None] | None:
+        command = msg.speed, msg.front_steering_angle, msg.rear_steering_angle
+        if not convert.is_sane(command):
+            self.refuse(f"not finite, or beyond {convert.LARGEST:g},")
+            return None
+        return lambda: self.base.command_axles(self.context.world_time(), *command)

@@ -3,12 +3,10 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
+from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.control.pid import PidGains
 from bullet_sim.description import JointLimits
 from bullet_sim.formats.urdf.facts import RobotFacts
-from bullet_sim_ros import names
-from bullet_sim_ros.control.controller_parameters import ControllerParameters
-from bullet_sim_ros.control.pid import read_gains
 
 GAINS = "gazebo_ros_control/pid_gains"
 LIMITS = "joint_limits"
@@ -19,10 +17,10 @@ KINDS = {"position": (("lower", "min_position"), ("upper", "max_position")),
          "effort": (("effort", "max_effort"),)}
 
 
-def read_joint_limits(namespace: str, robot: RobotFacts,
+def read_joint_limits(parameters: ControllerParameters, robot: RobotFacts,
                       joints: Iterable[str]) -> dict[str, JointLimits]:
     """The URDF's limits, overridden by `joint_limits/<joint>/...`."""
-    parameters = ControllerParameters(names.join(namespace, LIMITS))
+    parameters = parameters.group(LIMITS)
     return {
         joint: _overridden(robot.limits(joint) if robot.has_joint(joint) else JointLimits(),
                            parameters, joint)
@@ -43,8 +41,9 @@ def _overridden(limits: JointLimits, parameters: ControllerParameters, joint: st
     return limits
 
 
-def read_joint_gains(namespace: str, joints: Iterable[str]) -> dict[str, PidGains]:
+def read_joint_gains(parameters: ControllerParameters,
+                     joints: Iterable[str]) -> dict[str, PidGains]:
     """The gains of those joints that have any; the others are driven without a PID."""
-    parameters = ControllerParameters(names.join(namespace, GAINS))
-    return {joint: read_gains(parameters, joint) for joint in joints
+    parameters = parameters.group(GAINS)
+    return {joint: PidGains.from_parameters(parameters, joint) for joint in joints
             if parameters.has(f"{joint}/p")}
