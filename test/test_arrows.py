@@ -1,10 +1,10 @@
 """Imports follow the arrows of arrows.yaml beside this file."""
 
 import ast
+import functools
 import graphlib
 import re
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -33,15 +33,18 @@ def our_packages() -> set[str]:
 OURS = our_packages()
 
 
-def python_files() -> Iterator[Path]:
+@functools.cache
+def python_files() -> list[Path]:
     """Everything written in Python below src/; tests may look anywhere, setup.py is catkin's."""
+    found = []
     for path in sorted(p for p in ROOT.glob("src/**/*") if p.is_file()):
         if path.parent.name == "exercises" and (path.parent.parent / "exercises.yaml").exists():
             continue  # a learner's, and perhaps half written
         if path.name == "setup.py" or {"test", "__pycache__"} & set(path.relative_to(ROOT).parts):
             continue
         if path.suffix == ".py" or (path.suffix == "" and first_line(path).endswith("python3")):
-            yield path
+            found.append(path)
+    return found
 
 
 def first_line(path: Path) -> str:
@@ -49,13 +52,20 @@ def first_line(path: Path) -> str:
         return file.readline(80).decode("utf-8", "replace").strip()
 
 
+@functools.cache
+def absolute_imports(source: str) -> list[ast.Import | ast.ImportFrom]:
+    """Wherever in the file they stand."""
+    return [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Import)
+            or (isinstance(node, ast.ImportFrom) and node.level == 0)]
+
+
 def imported(source: str) -> list[tuple[int, str]]:
-    """(line, top-level module) of each absolute import, wherever in the file it stands."""
+    """(line, top-level module) of each absolute import."""
     found = []
-    for node in ast.walk(ast.parse(source)):
+    for node in absolute_imports(source):
         if isinstance(node, ast.Import):
             found += [(node.lineno, alias.name.split(".")[0]) for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+        else:
             found.append((node.lineno, (node.module or "").split(".")[0]))
     return found
 
@@ -193,10 +203,10 @@ def modules() -> dict[str, Path]:
 def imported_modules(name: str, source: str, known: dict[str, Path]) -> set[str]:
     """Modules of ours that a source imports, also within functions or for type checkers only."""
     found = set()
-    for node in ast.walk(ast.parse(source)):
+    for node in absolute_imports(source):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+        else:
             inner = [f"{node.module}.{alias.name}" for alias in node.names]
             found |= {node.module, *inner}  # what is imported from a package runs the package
     return (found & known.keys()) - {name}

@@ -1,4 +1,4 @@
-"""Runs apt-get, and reports a failure in one line."""
+"""Runs apt-get, and reports a failure in one line; the names that apt knows."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+from functools import cache
 
 NO_NETWORK = re.compile(
     r"Temporary failure|Could not (resolve|connect)|Unable to connect"
@@ -34,6 +35,17 @@ def as_root(command: list[str]) -> list[str]:
     return ["sudo", "env", *settings, *command]
 
 
+@cache
+def names() -> frozenset[str]:
+    """All packages in apt's lists, which it reads for a second where it keeps no index of them."""
+    try:
+        listed = subprocess.run(["apt-cache", "pkgnames"], capture_output=True, text=True,
+                                check=False).stdout
+    except OSError:
+        return frozenset()
+    return frozenset(listed.split())
+
+
 def install(packages: list[str]) -> None:
     """Installs Debian packages without recommended ones; AptError says why that failed.
 
@@ -42,6 +54,7 @@ def install(packages: list[str]) -> None:
     code, said = _run(as_root(["apt-get", "install", *OPTIONS, *packages]))
     if code and STALE.search(said):
         code, fetched = _run(as_root(["apt-get", "update", *OPTIONS]))
+        names.cache_clear()
         if code or NO_NETWORK.search(fetched):  # apt-get update only warns, and ends with 0
             raise AptError(_why(fetched, said))
         code, said = _run(as_root(["apt-get", "install", *OPTIONS, *packages]))

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import re
-import subprocess
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import yaml
 
+from workspace_needs import apt
 from workspace_needs.places import package_folder, release
 
 OURS, DEBIAN, ABSENT, UNKNOWN = "ours", "debian", "absent", "unknown"
@@ -70,7 +69,7 @@ class Tables:
             return Answer(OURS)
         if absence := self.absence(key):
             return Answer(ABSENT, why=absence.why)
-        if DEBIAN_NAME.fullmatch(key) and key in self._apt_names:
+        if DEBIAN_NAME.fullmatch(key) and key in apt.names():
             return Answer(DEBIAN, (key,))
         if others := self._other_releases(key):
             here = self._named(self._release)
@@ -86,6 +85,7 @@ class Tables:
     @staticmethod
     def _named(release: str) -> str:
         return RELEASES.get(release, release or "this system")
+
     def answer_cmake(self, name: str) -> Answer:
         """The same for a name in find_package or pkg_check_modules, mostly a key itself."""
         answer = self.answer(name)
@@ -96,7 +96,7 @@ class Tables:
         if answer.kind == ABSENT:
             return answer
         library = next((choice for choice in (f"{name}-dev", f"lib{name}-dev")
-                        if choice in self._apt_names), None)
+                        if choice in apt.names()), None)
         return Answer(DEBIAN, (library,)) if library else answer
 
     def why_ours_stays(self, package: str) -> str:
@@ -120,15 +120,6 @@ class Tables:
             return f"nobody has that name; is {similar[0]} meant?"
         return ("neither Debian nor this repository has it; clone its source into src/, or mend "
                 "the name")
-
-    @cached_property
-    def _apt_names(self) -> frozenset[str]:
-        try:
-            listed = subprocess.run(["apt-cache", "pkgnames"], capture_output=True, text=True,
-                                    check=False).stdout
-        except OSError:
-            return frozenset()
-        return frozenset(listed.split())
 
 
 def _is_slip(typed: str, name: str) -> bool:
