@@ -1,11 +1,15 @@
-"""When roscore is up."""
+"""When roscore is up, and that simulated time goes on."""
 
 import threading
+import time
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
+from run_session.failure import RunError
+from run_session.launch import Launched
 from run_session.master import free_port, is_up
+from run_session.processes import Family
 
 
 @pytest.fixture
@@ -32,3 +36,14 @@ def test_a_master_whose_roscore_has_not_named_the_run_is_not_up_yet(master):
 
 def test_where_nobody_listens_nothing_is_up():
     assert not is_up(f"http://localhost:{free_port()}")
+
+
+def test_time_that_stands_still_ends_the_run(tmp_path):
+    with Family() as family:
+        launched = Launched(family, tmp_path / "log")
+        for now in (1.0, 1.0, 2.0):
+            launched.check_time(now, 60.0)
+        until = time.monotonic() + 60.0
+        with pytest.raises(RunError, match=r"stood still at 2\.0 s for"):
+            while time.monotonic() < until:
+                launched.check_time(2.0, 0.05)

@@ -30,7 +30,6 @@ from evaluation.picture import CAR, FAINT, LAPS, LINE, WHITE, legend, map_sheet,
 from evaluation.report import cell, mean, table
 from evaluation.trial import Case, Trial
 from run_session import simulator
-from run_session.failure import RunError
 from run_session.launch import Launched
 from run_session.session import Session
 from trial_worlds.light import write_lit_world
@@ -70,11 +69,9 @@ class AutoraceStack:
     def watch(self) -> Sample:
         """The newest sample; RunError if none comes within SILENCE."""
         time.sleep(LOOK_PERIOD)
-        until, count = time.monotonic() + SILENCE, len(self.samples)
+        count = len(self.samples)
         while len(self.samples) == count:
-            self._launched.check(rospy.get_time())
-            if time.monotonic() > until:
-                raise RunError(f"no news of the robot for {SILENCE:.0f} s", self._launched.tail())
+            self._launched.check_time(self.samples[-1].time if self.samples else 0.0, SILENCE)
             time.sleep(LOOK_PERIOD)
         return self.samples[-1]
 

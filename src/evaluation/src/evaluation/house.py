@@ -21,7 +21,7 @@ from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.poses import compose, wrap_angle
 from run_session import simulator
 from run_session.files import find_package, located
-from run_session.observer import ServicePoller
+from run_session.observer import poll
 from run_session.records import Length, Must, are, is_number, load_record
 from run_session.session import StatusLine
 from run_session.simulator import place_of, pose_message, yaw_of
@@ -188,7 +188,6 @@ class Watch:
         self.plan = np.empty((0, 2))  # m, in the map's frame
         self._map_to_odom: np.ndarray | None = None
         self._ended = threading.Event()
-        self._asker = ServicePoller(self._ended)
         self._lock = threading.Lock()
 
     def start(self) -> None:
@@ -211,14 +210,14 @@ class Watch:
             self.plan = np.empty((0, 2))
 
     def _ask_poses(self) -> None:
-        for _ in self._asker.ticks(POSE_RATE_HZ, simulator.POSE, GetModelState):
-            records = self.records
-            reply = self._asker.call(ROBOT, "world")
-            if reply is not None and reply.success:
+        records = self.records
+        for reply in poll(self._ended, POSE_RATE_HZ, simulator.POSE, GetModelState, ROBOT, "world"):
+            if reply.success:
                 now, pose = reply.header.stamp.to_sec(), place_of(reply.pose)
                 records.truth.append((now, *pose))
                 if self.feelers is not None:
                     records.note_gap(self.feelers.gap(np.array(pose)), now)
+            records = self.records  # before the next call: its answer may be older than new ones
 
     def _take_transforms(self, message: TFMessage) -> None:
         for each in message.transforms:

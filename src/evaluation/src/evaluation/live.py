@@ -44,8 +44,6 @@ class LiveDrive(ABC):
         self.options, self.out = options, options.out
         self.progress = StatusLine()
         self.film: FilmFile | None = None
-        self._time: float | None = None  # s, simulated, at the last check
-        self._since = 0.0  # s, wall, since when simulated time has had this value
 
     # --- options
 
@@ -90,16 +88,6 @@ class LiveDrive(ABC):
     @abstractmethod
     def end(self) -> None:
         """Do the final counts while everything still runs; then stop observing."""
-
-    def check_time(self, launched: Launched, now: float) -> None:
-        """RunError if a program died, or if simulated time, s, has stood still for too long."""
-        launched.check(now)
-        if now != self._time:
-            self._time, self._since = now, time.monotonic()
-        still = time.monotonic() - self._since
-        if still > self.options.stuck_timeout:
-            raise RunError(f"simulated time has stood still at {now:.1f} s for {still:.0f} s:"
-                           " the simulator is paused or hangs")
 
     # --- results
 
@@ -254,7 +242,7 @@ class CarDrive(LiveDrive):
             self._take_samples()
             now = self.drive.samples[-1].time
             self.progress.update(now, self.line)
-            self.check_time(launched, now)
+            launched.check_time(now, self.options.stuck_timeout)
         return self.outcome()
 
     def _take_samples(self) -> int:

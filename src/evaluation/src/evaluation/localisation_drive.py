@@ -117,15 +117,10 @@ class LocalisationStack:
 
     def look(self, part: str, what: str) -> None:
         """Waits a little, checks that everything still runs, shows progress."""
-        before, began = self.now, time.monotonic()
-        while True:
+        before = self.now
+        while self.now <= before:
             time.sleep(LOOK_PERIOD)
-            self._launched.check(self.now)
-            if self.now > before:
-                break
-            if time.monotonic() - began > STILL_LIMIT:
-                raise RunError(f"no news of the robot for {STILL_LIMIT:.0f} s: the simulator hangs",
-                               self._launched.tail())
+            self._launched.check_time(self.now, STILL_LIMIT)
         self.watch.records.show(self._progress, part, what)
 
     def set_pace(self, factor: float) -> None:

@@ -217,7 +217,7 @@ class Part:
         """Waits a little, checks that everything still runs, shows progress."""
         time.sleep(LOOK_PERIOD)
         records = self._watch.records
-        self._run.check_time(self._launched, records.now)
+        self._launched.check_time(records.now, self._options.stuck_timeout)
         records.show(self._progress, self.name, what)
 
     def end(self) -> None:

@@ -55,19 +55,15 @@ class Launched:
         )
         self._children: list[Child] = []
         self._said: list[str] = []  # output lines of all children, as `check` has read them
+        self._time: float | None = None  # s, simulated, at the last `check_time`
+        self._since = 0.0  # s, wall, since when simulated time has had this value
         self._required: dict[str, str] = {}  # child's name -> required process just reported dead
 
     def start_roscore(self) -> None:
         """Start roscore and wait until it is up; this process's nodes then use it."""
         os.environ["ROS_MASTER_URI"] = self.master_uri
         self.start(Path(ROSCORE_LOG).stem, ["roscore", "-p", str(self.port)])
-        until = time.monotonic() + ROSCORE_TIME
-        while not is_up(self.master_uri):
-            self.check(None)
-            if time.monotonic() > until:
-                raise RunError(f"roscore was not up within {ROSCORE_TIME:.0f} s",
-                               self._children[0].last_lines())
-            time.sleep(LOOK_PERIOD)
+        self.wait_for("roscore", lambda: is_up(self.master_uri), ROSCORE_TIME)
         self._turn.close()
 
     def start(self, name: str, command: list[str]) -> Child:
@@ -138,6 +134,16 @@ class Launched:
                     f"{child.name} ended ({describe_exit(code)}) {when}; log: {child.log}",
                     self.tail(),
                 )
+
+    def check_time(self, now: float, limit: float) -> None:
+        """`check`; and RunError if simulated time, s, has stood still for more than `limit`, s."""
+        self.check(now)
+        if now != self._time:
+            self._time, self._since = now, time.monotonic()
+        still = time.monotonic() - self._since
+        if still > limit:
+            raise RunError(f"simulated time has stood still at {now:.1f} s for {still:.0f} s:"
+                           " the simulator is paused or hangs")
 
     def count_said(self, text: str) -> int:
         """How many of the lines that `check` has read contain this text."""

@@ -11,6 +11,7 @@ import threading
 import time
 import xmlrpc.client
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from typing import Any
 
 import rosgraph
 import rospy
@@ -27,30 +28,29 @@ from run_session.master import Connections, look_up
 from run_session.simulator import place_of
 
 
-class ServicePoller:
-    """Keeps the connection open and reconnects when it breaks; stops when `ended` is set."""
+def ticks(ended: threading.Event, rate_hz: float) -> Iterator[None]:
+    """Yields at this rate (wall time) until `ended` is set."""
+    while not ended.is_set():
+        began = time.monotonic()
+        yield
+        ended.wait(max(0.0, began + 1.0 / rate_hz - time.monotonic()))
 
-    def __init__(self, ended: threading.Event):
-        self._ended = ended
-        self._service, self._kind, self._proxy = "", Empty, None
 
-    def ticks(self, rate_hz: float, service: str = "", kind: type = Empty) -> Iterator[None]:
-        """Yields at this rate (wall time), each time the service is to be called."""
-        self._service, self._kind, self._proxy = service, kind, None
-        while not self._ended.is_set():
-            began = time.monotonic()
-            yield
-            self._ended.wait(max(0.0, began + 1.0 / rate_hz - time.monotonic()))
+def poll(ended: threading.Event, rate_hz: float, service: str, kind: type, *arguments: str
+         ) -> Iterator[Any]:
+    """The service's responses, called at this rate (wall time) until `ended` is set.
 
-    def call(self, *arguments: str) -> object | None:
-        """The service's response; None if the call failed."""
+    Keeps the connection open, and reconnects when a call fails, which yields nothing.
+    """
+    proxy = None
+    for _ in ticks(ended, rate_hz):
         try:
-            if self._proxy is None:
-                self._proxy = rospy.ServiceProxy(self._service, self._kind, persistent=True)
-            return self._proxy(*arguments)
-        except (rospy.ServiceException, rospy.ROSException, OSError):
-            self._proxy = None
-            return None
+            proxy = proxy or rospy.ServiceProxy(service, kind, persistent=True)
+            reply = proxy(*arguments)
+        except simulator.FAILURES:
+            proxy = None
+        else:
+            yield reply
 
 
 UNANSWERED_SAYS = "lockstep: no message on"  # in the simulator's warning, at most every 10 s
@@ -142,9 +142,7 @@ class Fingerprints:
 
         None if a message was missed: then the checksum would be meaningless.
         """
-        give_up = time.monotonic() + LAST_MESSAGE_TIME
-        while not self._later_than(until) and time.monotonic() < give_up:
-            time.sleep(0.01)
+        _wait_for(lambda: self._later_than(until), LAST_MESSAGE_TIME)
         with self._lock:
             return {topic: _sum(rows, until) for topic, rows in self._rows.items()}
 
@@ -183,7 +181,6 @@ class Observer:
         self._master_uri, self._robot, self._lockstep = master_uri, robot, lockstep
         self._samples: queue.SimpleQueue[tuple[float, Seen]] = queue.SimpleQueue()
         self._ended = threading.Event()
-        self._asker = ServicePoller(self._ended)
         self.missing = f"the simulator (service {simulator.WORLD})"
         self.frames = FrameCount(lockstep)
         rospy.init_node("course_run", anonymous=True, disable_signals=True, disable_rosout=True)
@@ -234,10 +231,7 @@ class Observer:
             self._ask_poses()
 
     def _wait_for_car(self) -> None:
-        for _ in self._asker.ticks(SETUP_RATE_HZ, simulator.WORLD, GetWorldProperties):
-            reply = self._asker.call()
-            if reply is None:
-                continue
+        for reply in poll(self._ended, SETUP_RATE_HZ, simulator.WORLD, GetWorldProperties):
             self.missing = f"the car (model {self._robot})"
             if self._robot in reply.model_names:
                 return
@@ -246,10 +240,7 @@ class Observer:
         """Wait until they run, or will with the first step: a paused world starts no controller."""
         service = f"{self._course.controllers}/{simulator.LIST_CONTROLLERS}"
         self.missing = f"the car's controllers (service {service})"
-        for _ in self._asker.ticks(SETUP_RATE_HZ, service, ListControllers):
-            reply = self._asker.call()
-            if reply is None:
-                continue
+        for reply in poll(self._ended, SETUP_RATE_HZ, service, ListControllers):
             missing = missing_controller({each.name: each.state for each in reply.controller},
                                          self._course.controller_names())
             if missing is None:
@@ -260,7 +251,7 @@ class Observer:
         me, course = rospy.get_name(), self._course
         topics = (course.camera, course.camera_info, course.commands, course.odometry,
                   *course.lockstep, *self._listened)
-        for _ in self._asker.ticks(SETUP_RATE_HZ):
+        for _ in ticks(self._ended, SETUP_RATE_HZ):
             try:
                 missing = missing_connection(look_up(self._master_uri, me, topics), me, course)
             except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
@@ -271,15 +262,14 @@ class Observer:
 
     def _begin(self) -> None:
         self.missing = f"the beginning of simulated time (service {simulator.UNPAUSE})"
-        for _ in self._asker.ticks(SETUP_RATE_HZ, simulator.UNPAUSE, Empty):
-            if self._asker.call() is not None:
-                self.missing = f"the first pose (topic {self._course.odometry})"
-                return
+        for _ in poll(self._ended, SETUP_RATE_HZ, simulator.UNPAUSE, Empty):
+            self.missing = f"the first pose (topic {self._course.odometry})"
+            return
 
     def _ask_poses(self) -> None:
-        for _ in self._asker.ticks(SAMPLE_RATE_HZ, simulator.POSE, GetModelState):
-            reply = self._asker.call(self._robot, "world")
-            if reply is not None and reply.success:
+        for reply in poll(self._ended, SAMPLE_RATE_HZ, simulator.POSE, GetModelState,
+                          self._robot, "world"):
+            if reply.success:
                 self._put(reply.header.stamp, reply.pose)
 
     def _take_odometry(self, message: Odometry) -> None:

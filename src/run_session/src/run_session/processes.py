@@ -11,10 +11,12 @@ import subprocess
 import time
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import psutil
+
+from run_session.files import Tail
 
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36  # <linux/prctl.h>
 INTERRUPT_TIME, TERMINATE_TIME, KILL_TIME = 1.2, 0.4, 0.6  # s; all within the 3 s of a Ctrl-C
@@ -30,18 +32,13 @@ class Child:
     name: str
     process: subprocess.Popen
     log: Path
-    _read: int = 0
-    _rest: str = field(default="", repr=False)
+
+    def __post_init__(self) -> None:
+        self._tail = Tail(self.log)
 
     def new_lines(self) -> list[str]:
         """Whole lines written since the last call."""
-        with self.log.open("rb") as file:
-            file.seek(self._read)
-            data = file.read()
-        self._read += len(data)
-        lines = (self._rest + data.decode(errors="replace")).split("\n")
-        self._rest = lines.pop()
-        return [strip_terminal_codes(line) for line in lines]
+        return [strip_terminal_codes(line) for line in self._tail.lines()]
 
     def last_lines(self, count: int = 12) -> str:
         """The end of its output, for an error message."""
