@@ -11,17 +11,16 @@ from sensor_msgs.msg import LaserScan
 from evaluation import localisation_drive
 from evaluation.command_line import NOT_RUN
 from evaluation.house import Records
-from evaluation.localisation_drive import SPEED, Steering
-from evaluation.localisation_results import (
+from evaluation.localisation_drive import (
     FINDING,
     KIDNAPS,
-    Load,
-    Search,
-    Tracking,
+    SPEED,
+    LocalisationCase,
+    Record,
+    Steering,
     right_since,
-    searched,
 )
-from evaluation.localisation_trials import LocalisationTrial
+from evaluation.localisation_trials import Load, LocalisationTrial, Search, Tracking
 from evaluation.trial import run_trial
 from run_session.failure import RunError
 
@@ -106,12 +105,25 @@ def search(off, until=21.0):
     """A robot that is off by so much (m) until 1 s and right from then until this time, s."""
     times = np.arange(0.0, until, 0.5)
     errors = np.column_stack((np.where(times < 1.0, off, 0.01), np.zeros(len(times))))
-    return searched(FINDING, 1, (0.0, 0.0, 0.0), 0.0, times, errors, 0)
+    return LocalisationTrial().judge(
+        Record(LocalisationCase("finding-1", FINDING, 1), np.zeros(3), times, errors))
 
 
 def test_found_is_who_was_right_for_long_enough():
     assert (search(2.0, 22.0).took, search(2.0, 22.0).off) == (1.0, 0.01)
     assert search(2.0, 20.0).took is None
+
+
+def test_a_long_drive_is_judged_by_what_it_is_for():
+    errors = np.array([[0.02, np.radians(1.0)], [0.06, np.radians(3.0)]])
+    tracking, load = (Record(LocalisationCase(kind, kind, 60), np.zeros(3), np.arange(2.0), errors,
+                             simulated=50.0, wall=100.0, driven=12.0, cpu=5.0)
+                      for kind in ("tracking", "load"))
+    trial = LocalisationTrial()
+    assert trial.judge(tracking) == Tracking(60, 12.0, *map(pytest.approx, (0.04, 2.0, 0.06, 3.0)))
+    assert trial.judge(load) == Load(2000, 50.0, 100.0, 10.0)
+    with pytest.raises(RunError, match="amcl said no pose"):
+        trial.judge(replace(tracking, times=np.empty(0), errors=np.empty((0, 2))))
 
 
 # --- what is shown

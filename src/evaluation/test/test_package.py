@@ -15,7 +15,7 @@ SHARED = {"case_process", "command_line", "film", "house", "lap", "lap_trial", "
 TRIALS = [{"course_run"}, {"race_trials"}, {"avoid"}, {"lane_trials", "lane_encounters"},
           {"track", "track_score", "track_trials"}, {"autorace", "autorace_judge"},
           {"navigate", "navigate_parts", "navigate_pictures", "navigate_score"},
-          {"localisation_trials", "localisation_drive", "localisation_results"},
+          {"localisation_trials", "localisation_drive"},
           {"navigation_trials", "yard_drive", "yard_judge"}]  # the modules of each
 
 

@@ -1,4 +1,4 @@
-"""The drives of amcl's trials: global localisation, kidnapped robot, tracking, CPU load."""
+"""Drives amcl's trials: global localisation, kidnapped robot, tracking, CPU load."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import contextlib
 import threading
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -19,18 +20,7 @@ from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Empty
 
 from evaluation.house import ROBOT, Watch, told_pose
-from evaluation.localisation_results import (
-    FINDING,
-    HOLD,
-    KIDNAPS,
-    LIMITS,
-    Load,
-    Search,
-    Tracking,
-    right_since,
-    searched,
-    tracking,
-)
+from evaluation.trial import Case
 from run_session import simulator
 from run_session.failure import RunError
 from run_session.launch import Launched
@@ -38,6 +28,10 @@ from run_session.processes import processes
 from run_session.session import StatusLine
 from trial_worlds.house import Ground
 
+FINDING, KIDNAPS, TRACKING, LOAD = "finding", "kidnaps", "tracking", "load"  # kinds of cases
+RIGHT_OFF, RIGHT_OFF_DEG = 0.3, 15.0  # m and degrees: largest error of a pose that counts as right
+HOLD = 20.0  # s, simulated, for which it must stay right
+LIMITS = {FINDING: 60.0, KIDNAPS: 120.0}  # s, simulated, within which it must be right
 START_LIMIT, STILL_LIMIT = 120.0, 30.0  # s, wall
 LOOK_PERIOD = 0.05  # s, wall
 FENCE = 0.8  # m ahead of the robot
@@ -45,12 +39,36 @@ TRUE, ENCODER = "<odometrySource>world<", "<odometrySource>encoder<"
 call_service = partial(simulator.call, wait=STILL_LIMIT)
 
 
+@dataclass(frozen=True)
+class LocalisationCase(Case):
+    """One robot to be localised, or one drive."""
+
+    kind: str
+    amount: int  # its number, or s, simulated
+
+
+@dataclass(frozen=True)
+class Record:
+    """What was seen in one case; m, rad, s."""
+
+    case: LocalisationCase
+    start: np.ndarray  # (3,), where the robot was put, in the world's frame
+    times: np.ndarray  # (N,), simulated
+    errors: np.ndarray  # (N, 2), of the estimated pose at these times: distance and turn
+    touched: int = 0
+    simulated: float = 0.0  # this and the next three are of a long drive
+    wall: float = 0.0
+    driven: float = 0.0
+    cpu: float = 0.0  # time that amcl used
+
+
 class LocalisationStack:
     """Made once per run; all of its methods may raise RunError."""
 
     def __init__(self, options: argparse.Namespace, ground: Ground, launched: Launched,
                  map_file: str, progress: StatusLine):
-        self._launched, self._ground, self._progress = launched, ground, progress
+        self._launched, self.ground, self._progress = launched, ground, progress
+        self.seed = options.seed
         launched.start_roscore()
         self.watch = Watch()
         launched.start("localisation", [
@@ -78,7 +96,7 @@ class LocalisationStack:
             return True
         _, x, y, yaw = truth[-1]
         point = np.array([x + FENCE * np.cos(yaw), y + FENCE * np.sin(yaw)])
-        walls = self._ground.walls
+        walls = self.ground.walls
         return bool(walls.contains(walls.cells_of(point)))
 
     def use_odometry(self, by_wheels: bool) -> None:
@@ -98,7 +116,7 @@ class LocalisationStack:
         simulator.spawn_urdf(ROBOT, urdf.replace(TRUE, ENCODER) if by_wheels else urdf, "/",
                              *self._start[:2])
         self._by_wheels = by_wheels
-        self.watch.feelers = self._ground.feelers(urdf)
+        self.watch.feelers = self.ground.feelers(urdf)
 
     def put(self, place: np.ndarray) -> None:
         """Move the robot to a pose (3,) in the world, unnoticed by its wheel odometry."""
@@ -138,10 +156,10 @@ class LocalisationStack:
         if any(taken.get(name) != count for name in names):
             raise RunError(f"amcl does not take {count} for {' and '.join(names)}")
 
-    @staticmethod
-    def cpu() -> float:
-        """CPU time of amcl since its start, s."""
-        return sum(process.cpu for process in processes() if process.name == "amcl")
+    def meters(self) -> np.ndarray:
+        """Simulated time, s, wall time, s, m driven, and CPU time of amcl, s (4,)."""
+        cpu = sum(process.cpu for process in processes() if process.name == "amcl")
+        return np.array([self.now, time.monotonic(), self.watch.records.length, cpu])
 
     def _wait(self, what: str, condition: Callable[[], object]) -> object:
         return self._launched.wait_for(what, condition, START_LIMIT, self._progress.status)
@@ -160,69 +178,61 @@ NEAR_AHEAD, NEAR_BESIDE = 0.55, 0.28  # m from the laser, below which it turns
 CLEAR_AHEAD = 0.8  # m, above which it goes straight on again
 
 
-def find(stack: LocalisationStack, ground: Ground, seed: int, number: int) -> Search:
+def find(stack: LocalisationStack, case: LocalisationCase) -> Record:
     """Global localisation: a robot at an unknown place in the house."""
-    random = np.random.default_rng([seed, number, 0])
-    place = _draw_place(ground, random)
+    random = np.random.default_rng([stack.seed, case.amount, 0])
+    place = _draw_place(stack.ground, random)
     stack.put(place)
     stack.forget()
-    return _search(stack, FINDING, number, place, random)
+    return _search(stack, case, place, random)
 
 
-def kidnap(stack: LocalisationStack, ground: Ground, seed: int, number: int) -> Search:
+def kidnap(stack: LocalisationStack, case: LocalisationCase) -> Record:
     """Kidnapped robot: a localised robot is moved elsewhere while it drives."""
-    random = np.random.default_rng([seed, number, 1])
-    _begin_known(stack, ground, random)
-    with wandering(seed, stack.may_go_on):
-        _watch_for(stack, SETTLE, f"before {KIDNAPS} {number}", "driving until it is carried away")
-    place = _draw_place(ground, random, stack.watch.records.true_pose)
+    random = np.random.default_rng([stack.seed, case.amount, 1])
+    _begin_known(stack, random)
+    with wandering(stack.seed, stack.may_go_on):
+        _watch_for(stack, SETTLE, f"before {KIDNAPS} {case.amount}",
+                   "driving until it is carried away")
+    place = _draw_place(stack.ground, random, stack.watch.records.true_pose)
     stack.put(place)
-    return _search(stack, KIDNAPS, number, place, random)
+    return _search(stack, case, place, random)
 
 
-def track(stack: LocalisationStack, ground: Ground, seed: int, seconds: float) -> Tracking:
-    """A long drive from a slightly wrong initial pose; the first SETTLE seconds do not count."""
-    random = np.random.default_rng([seed, 0, 2])
-    _begin_known(stack, ground, random)
-    with wandering(seed, stack.may_go_on):
-        _watch_for(stack, SETTLE, "tracking", "finding itself")
-        since, before = stack.now, stack.watch.records.length
-        _watch_for(stack, seconds, "tracking", "driving")
-    records = stack.watch.records
-    _, errors = records.errors(since)
-    if not len(errors):
-        raise RunError("amcl said no pose while it should have tracked the robot")
-    return tracking(seconds, records.length - before, errors)
+def follow(stack: LocalisationStack, case: LocalisationCase) -> Record:
+    """A long drive from a slightly wrong initial pose; the first SETTLE seconds do not count.
+
+    CPU load is measured with a constant number of particles, at real-time pace.
+    """
+    loaded = case.kind == LOAD
+    if loaded:
+        stack.set_pace(1.0)
+    place = _begin_known(stack, np.random.default_rng([stack.seed, 0, 3 if loaded else 2]))
+    if loaded:
+        stack.set_particles(PARTICLES)
+    with wandering(stack.seed, stack.may_go_on):
+        _watch_for(stack, SETTLE, case.kind, "finding itself")
+        before = stack.meters()
+        _watch_for(stack, case.amount, case.kind, "driving")
+        used = stack.meters() - before
+    return Record(case, place, *stack.watch.records.errors(before[0]), 0, *used.tolist())
 
 
-def measure_load(stack: LocalisationStack, ground: Ground, seed: int, seconds: float) -> Load:
-    """CPU time of amcl with a constant number of particles, at real-time pace."""
-    stack.set_pace(1.0)
-    _begin_known(stack, ground, np.random.default_rng([seed, 0, 3]))
-    stack.set_particles(PARTICLES)
-    with wandering(seed, stack.may_go_on):
-        _watch_for(stack, SETTLE, "load", "driving off")
-        began, used, wall = stack.now, stack.cpu(), time.monotonic()
-        _watch_for(stack, seconds, "load", "driving")
-        simulated, used = stack.now - began, stack.cpu() - used
-        wall = time.monotonic() - wall
-    return Load(PARTICLES, simulated, wall, 100.0 * used / simulated)
-
-
-def _begin_known(stack: LocalisationStack, ground: Ground, random: np.random.Generator) -> None:
-    place = _draw_place(ground, random)
+def _begin_known(stack: LocalisationStack, random: np.random.Generator) -> np.ndarray:
+    place = _draw_place(stack.ground, random)
     stack.put(place)
     stack.tell(place + random.uniform(-1, 1, 3) * TOLD_OFF)
+    return place
 
 
-def _search(stack: LocalisationStack, kind: str, number: int, place: np.ndarray,
-            random: np.random.Generator) -> Search:
+def _search(stack: LocalisationStack, case: LocalisationCase, place: np.ndarray,
+            random: np.random.Generator) -> Record:
     """Drives until the pose has been right for long enough, or no longer can be in time."""
     began = looked = stack.now
-    since, what, part = None, "searching", f"{kind} {number}"
+    what = "searching"
     with wandering(int(random.integers(1 << 31)), stack.may_go_on):
-        while stack.now - began < LIMITS[kind] + HOLD:
-            stack.look(part, what)
+        while stack.now - began < LIMITS[case.kind] + HOLD:
+            stack.look(f"{case.kind} {case.amount}", what)
             if stack.now - looked < PERIOD:
                 continue
             looked = stack.now
@@ -231,15 +241,27 @@ def _search(stack: LocalisationStack, kind: str, number: int, place: np.ndarray,
             what = "searching" if since is None else "right"
             if since is not None and times[-1] - since >= HOLD:
                 break
-    times, errors = stack.watch.records.errors(began)
-    return searched(kind, number, tuple(np.round(place, 3).tolist()), began, times, errors,
-                    len(stack.watch.records.contacts))
+    records = stack.watch.records
+    times, errors = records.errors(began)
+    return Record(case, place, times - began, errors, len(records.contacts))
+
+
+def right_since(times: np.ndarray, errors: np.ndarray) -> float | None:
+    """The time from which on all errors (N, 2), m and rad, at times (N,), s, are small; or None."""
+    if not len(times):
+        return None
+    wrong = np.flatnonzero((errors > (RIGHT_OFF, np.radians(RIGHT_OFF_DEG))).any(axis=1))
+    first = wrong[-1] + 1 if len(wrong) else 0
+    return float(times[first]) if first < len(times) else None
 
 
 def _watch_for(stack: LocalisationStack, seconds: float, part: str, what: str) -> None:
     until = stack.now + seconds
     while stack.now < until:
         stack.look(part, what)
+
+
+RUNS = {FINDING: find, KIDNAPS: kidnap, TRACKING: follow, LOAD: follow}
 
 
 def _draw_place(ground: Ground, random: np.random.Generator,

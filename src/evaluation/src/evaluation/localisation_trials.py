@@ -5,39 +5,135 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from evaluation.command_line import Parser
 from evaluation.house import load_house
-from evaluation.localisation_drive import LocalisationStack, find, kidnap, measure_load, track
-from evaluation.localisation_results import (
+from evaluation.localisation_drive import (
     FINDING,
+    HOLD,
     KIDNAPS,
-    LEAST_SHARES,
     LIMITS,
-    LIMITS_IN_REPORT,
-    Load,
-    Result,
-    Search,
-    Tracking,
+    LOAD,
+    PARTICLES,
+    RIGHT_OFF,
+    RIGHT_OFF_DEG,
+    RUNS,
+    TRACKING,
+    LocalisationCase,
+    LocalisationStack,
+    Record,
+    right_since,
 )
 from evaluation.report import grouped, table
-from evaluation.trial import Case, Trial, from_json
+from evaluation.trial import Trial, from_json
 from map_server.errors import MapFileError
 from map_server.map_files import write_map
 from run_session.failure import RunError
 from run_session.session import Session
 
-RUNS = {FINDING: find, KIDNAPS: kidnap, "tracking": track, "load": measure_load}
+LEAST_SHARES = {FINDING: 0.95, KIDNAPS: 0.8}
+MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # m and degrees: mean error while tracking
+MOST_CPU = 30.0  # percent of a core
+LIMITS_IN_REPORT = {"right": [RIGHT_OFF, RIGHT_OFF_DEG], "hold": HOLD, "within": LIMITS,
+                    "least_shares": LEAST_SHARES, "tracking": [MOST_OFF, MOST_OFF_DEG],
+                    "cpu": MOST_CPU}
 
 
 @dataclass(frozen=True)
-class LocalisationCase(Case):
-    """One robot to be localised, or one drive."""
+class Search:
+    """One robot that had to be localised; m, s simulated, degrees."""
 
-    kind: str  # of RUNS
-    amount: int  # its number, or s, simulated
+    set: str
+    number: int
+    start: tuple[float, float, float]  # x, y, yaw in the world; m, rad
+    took: float | None  # until it was right for HOLD; None: it never was
+    off: float | None  # error at the end; None: there was no pose
+    off_deg: float | None
+    touched: int
+
+    @property
+    def name(self) -> str:
+        """Its case's name."""
+        return f"{self.set}-{self.number}"
+
+    @property
+    def right(self) -> bool:
+        """Whether it was localised in time."""
+        return self.took is not None and self.took <= LIMITS[self.set]
+
+    @property
+    def line(self) -> str:
+        """A one-line summary."""
+        found = "not found" if self.took is None else f"found after {self.took:.1f} s"
+        late = "" if self.right or self.took is None else ", too late"
+        end = (", no pose at the end" if self.off is None else
+               f", at the end {self.off * 100:.1f} cm and {self.off_deg:.1f}° off")
+        return f"{self.set} {self.number}: {found}{late}{end}"
+
+
+@dataclass(frozen=True)
+class Tracking:
+    """A long drive from a known pose; m, s simulated, degrees."""
+
+    time: float
+    driven: float
+    off: float  # mean error
+    off_deg: float
+    largest_off: float
+    largest_off_deg: float
+
+    name: ClassVar[str] = TRACKING  # its case's name
+
+    @property
+    def passed(self) -> bool:
+        """Whether the mean errors are within the limits."""
+        return self.off <= MOST_OFF and self.off_deg <= MOST_OFF_DEG
+
+    @property
+    def line(self) -> str:
+        """A one-line summary."""
+        return f"tracking: {self.off * 100:.1f} cm, {self.off_deg:.1f}° off in the mean"
+
+    @property
+    def row(self) -> tuple[str, str, str, str]:
+        """Of the table."""
+        return (f"tracking, {self.time:.0f} s", f"{self.off * 100:.1f} cm, {self.off_deg:.1f}°",
+                f"{MOST_OFF * 100:.0f} cm, {MOST_OFF_DEG:.0f}°",
+                f"largest {self.largest_off * 100:.1f} cm, {self.largest_off_deg:.1f}°")
+
+
+@dataclass(frozen=True)
+class Load:
+    """CPU time that amcl's process used; s."""
+
+    particles: int
+    simulated: float
+    wall: float
+    percent: float  # of one core: s of CPU time in 100 simulated s
+
+    name: ClassVar[str] = LOAD  # its case's name
+
+    @property
+    def passed(self) -> bool:
+        """Whether it is within the limit."""
+        return self.percent <= MOST_CPU
+
+    @property
+    def line(self) -> str:
+        """A one-line summary."""
+        return f"load: {self.percent:.0f} % of a core"
+
+    @property
+    def row(self) -> tuple[str, str, str, str]:
+        """Of the table."""
+        return (f"amcl with {self.particles} particles", f"{self.percent:.0f} % of a core",
+                f"{MOST_CPU:.0f} %", f"real time x{self.simulated / self.wall:.2f}")
+
+
+Result = Search | Tracking | Load
 
 
 class LocalisationTrial(Trial):
@@ -76,15 +172,27 @@ class LocalisationTrial(Trial):
                  for kind, count in ((FINDING, options.starts), (KIDNAPS, options.kidnaps))
                  for number in range(options.first, options.first + count)]
         return found + [LocalisationCase(kind, kind, seconds) for kind, seconds in (
-            ("tracking", options.tracking), ("load", options.load)) if seconds]
+            (TRACKING, options.tracking), (LOAD, options.load)) if seconds]
 
-    def drive(self, session: Session, case: LocalisationCase) -> Result:
-        """The result of the case, by its kind."""
+    def drive(self, session: Session, case: LocalisationCase) -> Record:
         options = self.options
         stack = session.once(lambda: _bring_up(session, options))
         to_be_found = case.kind in (FINDING, KIDNAPS)
         stack.use_odometry(by_wheels=to_be_found or options.wheel_odometry)
-        return RUNS[case.kind](stack, options.ground, options.seed, case.amount)
+        return RUNS[case.kind](stack, case)
+
+    def judge(self, record: Record) -> Result:
+        kind, errors = record.case.kind, record.errors
+        if kind in LIMITS:
+            return _searched(record)
+        if kind == LOAD:
+            return Load(PARTICLES, record.simulated, record.wall,
+                        100.0 * record.cpu / record.simulated)
+        if not len(errors):
+            raise RunError("amcl said no pose while it should have tracked the robot")
+        (off, turn), (largest, largest_turn) = errors.mean(axis=0), errors.max(axis=0)
+        return Tracking(record.case.amount, record.driven, float(off), float(np.degrees(turn)),
+                        float(largest), float(np.degrees(largest_turn)))
 
     def passed(self, results: Sequence[Result]) -> bool:
         """Whether all results are within the limits."""
@@ -125,6 +233,17 @@ def _bring_up(session: Session, options: argparse.Namespace) -> LocalisationStac
                               session.progress)
     session.at_end(stack.watch.stop)
     return stack
+
+
+def _searched(record: Record) -> Search:
+    times, errors = record.times, record.errors
+    since = right_since(times, errors)
+    held = since is not None and times[-1] - since >= HOLD
+    off, turned = (round(float(each), 4) for each in errors[-1]) if len(errors) else (None, None)
+    return Search(
+        record.case.kind, record.case.amount, tuple(np.round(record.start, 3).tolist()),
+        round(since, 2) if held else None, off,
+        turned if turned is None else round(float(np.degrees(turned)), 3), record.touched)
 
 
 def _sets(results: Sequence[Result]) -> dict[str, list[Search]]:
