@@ -3,15 +3,16 @@
 import importlib
 import json
 from dataclasses import asdict, replace
+from types import SimpleNamespace
 
 import cv2
 import pytest
 
 from evaluation import navigation_trials as trial_module
 from evaluation.command_line import NOT_PASSED, NOT_RUN, PASSED
-from evaluation.navigation_trials import YardTrial, write_sheets
+from evaluation.navigation_trials import DriveResult, YardTrial, summarize, write_sheets
 from evaluation.trial import run_trial
-from evaluation.yard_judge import CROSSINGS, YARDS, DriveResult, summarize
+from evaluation.yard_drive import CROSSINGS, YARDS
 from run_session.failure import RunError
 from trial_worlds.crossing import draw_crossing
 from trial_worlds.yard import draw_yard
@@ -124,16 +125,16 @@ def trials(tmp_path, monkeypatch):
     def run(drives, *options: str) -> int:
         given = iter(drives)
 
-        def drive(_rig, _task, judge):
+        def drive(_rig, _task):
             found = next(given)
             if isinstance(found, BaseException):
                 raise found
-            judge.path = [(0.0, 0.0, 0.0, 0.0), (5.0, 1.0, 0.0, 0.0)]
-            return found
+            way = [(0.0, 0.0, 0.0, 0.0), (5.0, 1.0, 0.0, 0.0)]
+            return SimpleNamespace(passage=SimpleNamespace(path=way), found=found)
 
-        for name, fake in (("NavigationStack", lambda *_, **__: None), ("prepare", lambda *_: None),
-                           ("drive_task", drive)):
-            monkeypatch.setattr(trial_module, name, fake)
+        monkeypatch.setattr(trial_module, "NavigationStack", lambda *_, **__: None)
+        monkeypatch.setattr(trial_module.yard_drive, "drive_task", drive)
+        monkeypatch.setattr(trial_module, "judged", lambda record: record.found)
         return run_trial(YardTrial(), [*options, "--out", str(tmp_path)])
 
     return run

@@ -1,17 +1,18 @@
-"""Drives without a simulator: what the judge sees, and how a drive ends."""
+"""Drives without a simulator: what is seen, and how a drive ends."""
 
 import numpy as np
 import pytest
 
 from evaluation import yard_drive as driving
-from evaluation.yard_drive import SLOW
-from evaluation.yard_judge import (
+from evaluation.navigation_trials import judged
+from evaluation.yard_drive import (
+    BY_PERSON,
+    BY_ROBOT,
     CROSSINGS,
     OBSTACLE,
-    PERSON,
-    WALKED_INTO_ROBOT,
+    SLOW,
     YARDS,
-    Judge,
+    Passage,
     Sample,
 )
 from run_session.failure import RunError
@@ -28,32 +29,32 @@ def at(time, x, speed=0.26, person=None) -> Sample:
     return Sample(time, (x, 0.0, 0.0), speed, person)
 
 
-# --- judge
+# --- what is seen
 
 
 def test_time_and_way_are_counted_from_the_first_sample():
-    judge = Judge(np.array([[1.0, 0.353]]), 0.1)
+    seen = Passage(np.array([[1.0, 0.253 + RADIUS]]))
     for n in range(5):
-        judge.see(at(10.0 + n, 0.25 * n))
-    assert (judge.time, judge.distance, judge.contact, len(judge.path)) == (4.0, 1.0, None, 5)
-    assert judge.to_obstacles == pytest.approx(0.1)
+        seen.see(at(10.0 + n, 0.25 * n))
+    assert (seen.time, seen.distance, seen.contact, len(seen.path)) == (4.0, 1.0, None, 5)
+    assert seen.to_obstacles == pytest.approx(0.1)
 
 
 def test_a_contact_ends_what_counts():
-    judge = Judge(np.array([[1.0, 0.0]]), 0.1)
+    seen = Passage(np.array([[0.9 + RADIUS, 0.0]]))
     for n in range(100):
-        judge.see(at(0.1 * n, 0.026 * n))
-    assert judge.contact == OBSTACLE
-    assert judge.time == pytest.approx(3.2)  # 0.827 m until the camera touches
+        seen.see(at(0.1 * n, 0.026 * n))
+    assert seen.contact == OBSTACLE
+    assert seen.time == pytest.approx(3.2)  # 0.827 m until the camera touches
 
 
-@pytest.mark.parametrize(("speed", "said"), [(0.1, PERSON), (0.0, WALKED_INTO_ROBOT)])
+@pytest.mark.parametrize(("speed", "said"), [(0.1, BY_ROBOT), (0.0, BY_PERSON)])
 def test_who_touched_whom(speed, said):
-    judge = Judge(NOBODY, 0.0)
-    judge.see(at(0.0, 0.0, speed, (0.5, 0.0, 0.0)))
-    assert judge.contact is None and judge.to_person == pytest.approx(0.177)
-    judge.see(at(0.1, 0.0, speed, (0.31, 0.0, 0.0)))
-    assert judge.contact == said
+    seen = Passage(NOBODY)
+    seen.see(at(0.0, 0.0, speed, (0.5, 0.0, 0.0)))
+    assert seen.contact is None and seen.to_person == pytest.approx(0.177)
+    seen.see(at(0.1, 0.0, speed, (0.31, 0.0, 0.0)))
+    assert seen.contact == said
 
 
 # --- one drive
@@ -95,9 +96,8 @@ class FakeRig:
 
 def drive(rig, task):
     """The result, and where it went."""
-    driving.prepare(rig, task)
-    judge = Judge(task.cylinders, RADIUS)
-    return driving.drive_task(rig, task, judge), judge.path
+    record = driving.drive_task(rig, task)
+    return judged(record), record.passage.path
 
 
 def test_a_drive_into_an_obstacle_is_a_contact():

@@ -16,7 +16,7 @@ TRIALS = [{"course_run"}, {"race_trials"}, {"avoid"}, {"lane_trials", "lane_enco
           {"track", "track_score", "track_trials"}, {"autorace", "autorace_judge"},
           {"navigate", "navigate_parts", "navigate_pictures", "navigate_score"},
           {"localisation_trials", "localisation_drive"},
-          {"navigation_trials", "yard_drive", "yard_judge"}]  # the modules of each
+          {"navigation_trials", "yard_drive"}]  # the modules of each
 
 
 def imports(path: Path) -> set[str]:

@@ -4,29 +4,152 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
+from collections import Counter
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from evaluation import yard_judge
+from evaluation import yard_drive
 from evaluation.command_line import Parser
 from evaluation.picture import CAR, FAINT, GOOD, chart, lap_colour, write_tiles
-from evaluation.report import grouped, table_of
+from evaluation.report import cell, grouped, mean, table_of
 from evaluation.trial import Trial
-from evaluation.yard_drive import NavigationStack, YardCase, drive_task, prepare, task_of
-from evaluation.yard_judge import CROSSINGS, REACHED, YARDS, DriveResult, Judge
+from evaluation.yard_drive import CROSSINGS, YARDS, NavigationStack, Record, YardCase
 from run_session.failure import RunError
 from run_session.files import find_package
 from run_session.session import Session
-from trial_worlds.crossing import APPROACH, PERSON_RADIUS, Crossing, world, yard_model
+from trial_worlds import crossing
 from trial_worlds.yard import APRON, CELL, RADIUS, SIZE, draw_yard, places
+
+REACHED, TOUCHED, WALKED_INTO, GIVEN_UP, LATE, NOT_THERE = (
+    "reached", "contact", "walked into", "given up", "late", "called reached")
+NEAR = 0.2  # m from a goal that is reported reached, by the simulator's own pose
+LEAST_SHARE = 0.95  # of the yards, and of the crossings except those that people ended
+BEST, WORST = 4.0, 8.0  # multiples of the shortest time between which BARN's score falls
+
+
+@dataclass(frozen=True)
+class DriveResult:
+    """The result of one drive; m, s."""
+
+    set: str
+    seed: int
+    repeat: int
+    outcome: str
+    why: str | None
+    time: float
+    distance: float
+    straight_time: float  # of the straight line from start to goal at top speed
+    shortest_time: float  # of the shortest path that is wide enough, at top speed
+    to_obstacles: float | None  # the least gap; None: there were none
+    to_person: float | None
+    recoveries: list[str]
+    slow_cycles: int  # move_base's warnings that it was too slow, at most one in 5 s
+    real_time_factor: float
+    drawn: dict = field(default_factory=dict)  # the yard's difficulty, or the person's walk
+
+    @property
+    def reached(self) -> bool:
+        """Whether it reached its goal without touching anything."""
+        return self.outcome == REACHED
+
+    @property
+    def score(self) -> float:
+        """The BARN challenge's: 0.25 for a fast drive, 0.125 for a slow one, 0 for none."""
+        if not self.reached:
+            return 0.0
+        return self.shortest_time / min(max(self.time, BEST * self.shortest_time),
+                                        WORST * self.shortest_time)
+
+    @property
+    def name(self) -> str:
+        """Its case's name, also that of its files."""
+        return f"{self.set}-{self.seed}-{self.repeat}"
+
+    @property
+    def line(self) -> str:
+        """A one-line summary."""
+        why = f" ({self.why})" if self.why else ""
+        air = self.to_obstacles if self.to_person is None else self.to_person
+        recovered = f", {len(self.recoveries)} recoveries" if self.recoveries else ""
+        return (f"{self.name}: {self.outcome}{why}, {self.time:.1f} s (straight"
+                f" {self.straight_time:.1f} s), {cell(air, 100, 1)} cm of air{recovered},"
+                f" real time x{self.real_time_factor:.2f}")
+
+
+def judged(record: Record) -> DriveResult:
+    """Judge one drive."""
+    task, passage, case = record.task, record.passage, record.task.case
+    outcome, why = _outcome(record)
+    return DriveResult(
+        set=case.set, seed=case.seed, repeat=case.repeat, outcome=outcome, why=why,
+        time=round(passage.time, 2), distance=round(passage.distance, 3),
+        straight_time=round(math.dist(task.start[:2], task.goal[:2]) / crossing.ROBOT_SPEED, 2),
+        shortest_time=round(task.shortest / crossing.ROBOT_SPEED, 2),
+        to_obstacles=_known(passage.to_obstacles), to_person=_known(passage.to_person),
+        recoveries=record.recoveries, slow_cycles=record.slow_cycles,
+        real_time_factor=round(record.real_time_factor, 2), drawn=task.drawn)
+
+
+def _outcome(record: Record) -> tuple[str, str | None]:
+    """How a drive ended, in one word and in others."""
+    passage, ended, off = record.passage, record.ended, record.passage.off(record.task.goal)
+    if passage.contact:
+        return (WALKED_INTO if passage.contact == yard_drive.BY_PERSON else TOUCHED), ended
+    if ended == REACHED:
+        return (REACHED, None) if off <= NEAR else (NOT_THERE, f"from {off:.2f} m away")
+    return (LATE if passage.time > yard_drive.LIMIT else GIVEN_UP), ended
+
+
+def _known(air: float) -> float | None:
+    return None if math.isinf(air) else round(air, 4)
+
+
+COLUMNS = {
+    "drives": lambda each: each["set"],
+    "reached": lambda each: f"{each['outcomes'].get(REACHED, 0)} of {each['drives']}",
+    "": lambda each: f"{each['share_reached']:.0%}",
+    "s": lambda each: cell(each["mean_time"]),
+    "straight s": lambda each: cell(each["mean_straight_time"]),
+    "ratio": lambda each: cell(each["mean_time_by_straight"], 1, 2),
+    "BARN": lambda each: cell(each["mean_score"], 1, 3),
+    "air cm": lambda each: cell(each["least_to_obstacles"], 100),
+    "to person cm": lambda each: cell(each["least_to_person"], 100),
+    "with recovery": lambda each: str(each["drives_with_recovery"])}
+
+
+def summarize(drives: Sequence[DriveResult]) -> list[dict]:
+    """A summary for each set; means are of drives that reached the goal, None if none did."""
+    return [_summary(*group) for group in grouped(drives, lambda drive: drive.set).items()]
+
+
+def _summary(name: str, drives: list[DriveResult]) -> dict:
+    there = [drive for drive in drives if drive.reached]
+    return {
+        "set": name, "drives": len(drives),
+        "outcomes": dict(Counter(sorted(drive.outcome for drive in drives))),
+        "share_reached": len(there) / len(drives),
+        "mean_time": mean([drive.time for drive in there]),
+        "mean_straight_time": mean([drive.straight_time for drive in there]),
+        "mean_time_by_straight": mean([drive.time / drive.straight_time for drive in there]),
+        "mean_time_by_shortest": mean([drive.time / drive.shortest_time for drive in there]),
+        "mean_score": mean([drive.score for drive in drives]),
+        "least_to_obstacles": min(
+            (d.to_obstacles for d in there if d.to_obstacles is not None), default=None),
+        "least_to_person": min(
+            (d.to_person for d in there if d.to_person is not None), default=None),
+        "drives_with_recovery": sum(bool(drive.recoveries) for drive in drives),
+        "failed": [drive.name for drive in drives if not drive.reached]}
+
 
 YARD = (-APRON * CELL, (SIZE + APRON) * CELL, -SIZE * CELL / 2, SIZE * CELL / 2)  # m: x, y
 ROOM = (-0.2, 5.2, *YARD[2:])
 TILE_WIDTH, CAPTION = 3.4, 0.25  # inches
-COLOURS = {REACHED: "#1b6ca8", "called reached": "#16a085", "contact": "#c0392b",
-           "walked into": "#8e44ad", "given up": "#c9782f", "late": "#7a8b99"}
+COLOURS = {REACHED: "#1b6ca8", NOT_THERE: "#16a085", TOUCHED: "#c0392b",
+           WALKED_INTO: "#8e44ad", GIVEN_UP: "#c9782f", LATE: "#7a8b99"}
 
 # Set, labels of x and y axis, and their values.
 Figure = Callable[[DriveResult], float]
@@ -96,10 +219,10 @@ def _draw_yard(axes: object, drive: DriveResult) -> None:
 
 def _draw_walk(axes: object, drive: DriveResult) -> None:
     """Draw the strip that the person walks through."""
-    walk = Crossing(**drive.drawn)
+    walk = crossing.Crossing(**drive.drawn)
     begin, yaw = np.array(walk.begin[:2]), walk.heading
-    ends = np.array([begin, begin + 2 * APPROACH * np.array([np.cos(yaw), np.sin(yaw)])])
-    aside = PERSON_RADIUS * np.array([-np.sin(yaw), np.cos(yaw)])
+    ends = np.array([begin, begin + 2 * crossing.APPROACH * np.array([np.cos(yaw), np.sin(yaw)])])
+    aside = crossing.PERSON_RADIUS * np.array([-np.sin(yaw), np.cos(yaw)])
     axes.fill(*np.concatenate([ends + aside, ends[::-1] - aside]).T, color=lap_colour(3), alpha=0.5)
 
 
@@ -154,39 +277,40 @@ class YardTrial(Trial):
         trials += [(CROSSINGS, seed, 0) for seed in crossings]
         return [YardCase("-".join(map(str, each)), *each) for each in trials]
 
-    def drive(self, session: Session, case: YardCase) -> DriveResult:
-        """The drive's result; its path is written below drives/."""
-        options, task = self.options, task_of(case)
+    def drive(self, session: Session, case: YardCase) -> Record:
+        """What happened; the path is written below drives/."""
+        options, task = self.options, yard_drive.task_of(case)
         stack = session.once(lambda: NavigationStack(
             session.launched("robot"), options.real_time_factor, options.parameters))
         if case.set == YARDS:
             path = session.out / "worlds" / f"yard_{case.seed}.world"
             path.parent.mkdir(exist_ok=True)
-            path.write_text(world(yard_model(draw_yard(case.seed))), encoding="utf-8")
-        prepare(stack, task)
-        judge = Judge(task.cylinders, RADIUS)
-        drove = drive_task(stack, task, judge)
+            path.write_text(crossing.world(task.models["yard"][0]), encoding="utf-8")
+        record = yard_drive.drive_task(stack, task)
         path = session.out / "drives" / f"{case.name}.json"
         path.parent.mkdir(exist_ok=True)
-        rounded = [[round(value, 4) for value in place] for place in judge.path]
+        rounded = [[round(value, 4) for value in place] for place in record.passage.path]
         path.write_text(json.dumps(rounded) + "\n", encoding="utf-8")
-        return drove
+        return record
+
+    def judge(self, record: Record) -> DriveResult:
+        return judged(record)
 
     def passed(self, results: Sequence[DriveResult]) -> bool:
         """Whether enough goals were reached, and the robot, while moving, touched nobody."""
-        touched = any(d.set == CROSSINGS and d.outcome == yard_judge.TOUCHED for d in results)
-        sets = grouped((d for d in results if d.outcome != yard_judge.WALKED_INTO), lambda d: d.set)
+        touched = any(d.set == CROSSINGS and d.outcome == TOUCHED for d in results)
+        sets = grouped((d for d in results if d.outcome != WALKED_INTO), lambda d: d.set)
         shares = [sum(d.reached for d in found) / len(found) for found in sets.values()]
-        return not touched and min(shares, default=1.0) >= yard_judge.LEAST_SHARE
+        return not touched and min(shares, default=1.0) >= LEAST_SHARE
 
     def table(self, results: Sequence[DriveResult]) -> str:
-        return table_of(yard_judge.COLUMNS, yard_judge.summarize(results), left=())
+        return table_of(COLUMNS, summarize(results), left=())
 
     def values(self, results: Sequence[DriveResult]) -> dict:
         return {
-            "least_share_of_yards": yard_judge.LEAST_SHARE,
+            "least_share_of_yards": LEAST_SHARE,
             "passed": self.passed(results),
-            "summaries": yard_judge.summarize(results),
+            "summaries": summarize(results),
             **super().values(results),
         }
 

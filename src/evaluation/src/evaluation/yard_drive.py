@@ -1,4 +1,4 @@
-"""One drive of move_base through a yard or past a person: simulator, goal, judgement."""
+"""One drive of move_base through a yard or past a person: simulator, goal, gaps, contacts."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import queue
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from functools import partial
 from pathlib import Path
 
 import actionlib
@@ -15,27 +14,17 @@ import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from gazebo_msgs.msg import ModelStates
-from gazebo_msgs.srv import DeleteModel, SpawnModel
 from geometry_msgs.msg import Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal, RecoveryStatus
 from std_srvs.srv import Empty
 
-from evaluation import yard_judge
 from evaluation.trial import Case
-from evaluation.yard_judge import WALKED_INTO_ROBOT, DriveResult, Judge, Sample
+from run_session import simulator
 from run_session.launch import Launched
-from run_session.simulator import WAFFLE, Place, call, models, place_of, pose_message, put
+from run_session.simulator import WAFFLE, Place, place_of, pose_message
 from trial_worlds import crossing
-from trial_worlds.crossing import (
-    APPROACH,
-    PERSON_TOPIC,
-    ROBOT_SPEED,
-    Crossing,
-    person_model,
-    room_model,
-    yard_model,
-)
-from trial_worlds.yard import draw_yard
+from trial_worlds.crossing import CONTACT, PERSON_RADIUS, Crossing, clearance
+from trial_worlds.yard import RADIUS, draw_yard
 
 START_LIMIT, ANSWER_LIMIT, SILENCE = 120.0, 30.0, 30.0  # s, wall
 FRESH = 0.7  # s, simulated, to renew costmaps: laser at 5 Hz, its transform, costmap at 10 Hz
@@ -43,7 +32,65 @@ PERSON = "person"
 UNDER_WAY = (GoalStatus.PENDING, GoalStatus.ACTIVE, GoalStatus.PREEMPTING, GoalStatus.RECALLING)
 SLOW = "missed its desired rate"  # in move_base's warning
 WAIT_PERIOD = 0.02  # s, wall
-call_service = partial(call, wait=ANSWER_LIMIT)
+
+
+STANDING = 0.02   # m/s
+PATH_STEP = 0.02  # m between two recorded points
+OBSTACLE, BY_ROBOT, BY_PERSON = (
+    "touched an obstacle", "touched the person", "the person walked into the standing robot")
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Positions of robot and person, by the simulator."""
+
+    time: float  # s, simulated
+    robot: Place
+    speed: float  # m/s, of the robot
+    person: Place | None
+
+
+class Passage:
+    """Sees one drive from its first sample on; after a contact nothing more counts."""
+
+    def __init__(self, cylinders: np.ndarray):
+        """`cylinders` (N, 2): their centres, m; none in an empty room."""
+        self._cylinders = cylinders
+        self._began: float | None = None
+        self._last: Sample | None = None
+        self.time = self.distance = 0.0  # s, m
+        self.to_obstacles = self.to_person = math.inf  # least gaps so far, m
+        self.contact: str | None = None
+        self.path: list[tuple[float, ...]] = []  # s, x, y, yaw, every PATH_STEP
+
+    def see(self, sample: Sample) -> None:
+        """Take the next sample."""
+        if self.contact:
+            return
+        self._began = sample.time if self._began is None else self._began
+        self.time = sample.time - self._began
+        if self._last is not None:
+            self.distance += math.dist(self._last.robot[:2], sample.robot[:2])
+        self._last = sample
+        if not self.path or math.dist(self.path[-1][1:3], sample.robot[:2]) >= PATH_STEP:
+            self.path.append((self.time, *sample.robot))
+        self._look(sample)
+
+    def off(self, place: Place) -> float:
+        """The robot's last distance from a place, m; inf before the first sample."""
+        return math.inf if self._last is None else math.dist(self._last.robot[:2], place[:2])
+
+    def _look(self, sample: Sample) -> None:
+        air = clearance(sample.robot, self._cylinders, RADIUS)
+        self.to_obstacles = min(self.to_obstacles, air)
+        if air < CONTACT:
+            self.contact = OBSTACLE
+        if sample.person is None:
+            return
+        air = clearance(sample.robot, np.array([sample.person[:2]]), PERSON_RADIUS)
+        self.to_person = min(self.to_person, air)
+        if air < CONTACT:
+            self.contact = BY_PERSON if sample.speed < STANDING else BY_ROBOT
 
 
 class NavigationStack:
@@ -55,13 +102,13 @@ class NavigationStack:
         launched.start("yard", [
             "roslaunch", "evaluation", "yard.launch", f"real_time_factor:={real_time_factor:g}",
             f"parameters:={parameters}"])
-        self.wait(lambda: WAFFLE in models(), f"model {WAFFLE}", START_LIMIT)
+        self.wait(lambda: WAFFLE in simulator.models(), f"model {WAFFLE}", START_LIMIT)
         rospy.init_node("navigation_trials", disable_signals=True, disable_rosout=True)
         self._samples: queue.SimpleQueue[Sample] = queue.SimpleQueue()
         self.recoveries: list[str] = []
         self._slow_before = 0
         self._there: set[str] = set()
-        self._walk = rospy.Publisher(PERSON_TOPIC, Twist, queue_size=1)
+        self._walk = rospy.Publisher(crossing.PERSON_TOPIC, Twist, queue_size=1)
         rospy.Subscriber("gazebo/model_states", ModelStates, self._take, queue_size=1)
         rospy.Subscriber("move_base/recovery_status", RecoveryStatus, self._take_recovery)
         self._client = actionlib.ActionClient("move_base", MoveBaseAction)
@@ -75,15 +122,14 @@ class NavigationStack:
         Its costmaps then hold only what it sees from there.
         """
         for name in sorted(self._there):
-            call_service("/gazebo/delete_model", DeleteModel, name)
+            simulator.delete(name)
             self._there.discard(name)
-        put(WAFFLE, start, ANSWER_LIMIT)
+        simulator.put(WAFFLE, start, ANSWER_LIMIT)
         for name, (text, place) in models.items():
-            call_service("/gazebo/spawn_sdf_model", SpawnModel, name, text, "", pose_message(place),
-                       "world")
+            simulator.spawn_sdf(name, text, place)
             self._there.add(name)
         self.pause(FRESH)
-        call_service("/move_base/clear_costmaps", Empty)
+        simulator.call("/move_base/clear_costmaps", Empty, wait=ANSWER_LIMIT)
         self.pause(FRESH)
         self.samples()
         self.recoveries.clear()
@@ -159,8 +205,8 @@ class NavigationStack:
 
 LOOK_PERIOD = 0.05  # s, wall
 LIMIT = 100.0       # s, simulated, as in the benchmark
-NEAR = 0.2          # m from a goal that is reported reached, by the simulator's own pose
 ORIGIN = (0.0, 0.0, 0.0)
+YARDS, CROSSINGS = "yards", "crossings"  # the two sets of drives
 
 
 @dataclass(frozen=True)
@@ -186,76 +232,61 @@ class Task:
     walk: Crossing | None = None
 
 
+@dataclass(frozen=True)
+class Record:
+    """What happened in one drive."""
+
+    task: Task
+    passage: Passage
+    ended: str  # "reached", or why not
+    recoveries: list[str]
+    slow_cycles: int
+    real_time_factor: float
+
+
 def task_of(case: YardCase) -> Task:
     """The task: through a yard, or through a room that a person walks across."""
-    if case.set == yard_judge.YARDS:
+    if case.set == YARDS:
         yard = draw_yard(case.seed)
+        models = {"yard": (crossing.yard_model(yard), ORIGIN)}
         drawn = {"fill": yard.fill, "smoothing": yard.smoothing,
                  "path_length": yard.path_length, **asdict(yard.difficulty)}
-        return Task(case, {"yard": (yard_model(yard), ORIGIN)}, yard.start(case.repeat), yard.goal,
-                    yard.path_length, yard.cylinders, drawn)
+        return Task(case, models, yard.start(case.repeat), yard.goal, yard.path_length,
+                    yard.cylinders, drawn)
     walk, start, goal = crossing.draw_crossing(case.seed), crossing.START, crossing.GOAL
-    models = {"room": (room_model(), ORIGIN), PERSON: (person_model(), walk.begin)}
+    models = {"room": (crossing.room_model(), ORIGIN),
+              PERSON: (crossing.person_model(), walk.begin)}
     return Task(case, models, start, goal, math.dist(start[:2], goal[:2]), np.empty((0, 2)),
                 asdict(walk), walk)
 
 
-def prepare(stack: NavigationStack, task: Task) -> None:
-    """Set up the task's world, with the robot at its start."""
+def drive_task(stack: NavigationStack, task: Task) -> Record:
+    """Set up the task's world, and drive from start to goal, or as far as the robot gets."""
     stack.prepare(task.models, task.start)
     if task.walk is not None:
         stack.wait(stack.person_listens, "the person")
+    passage, began = Passage(task.cylinders), time.monotonic()
+    ended = _watch(stack, passage, task)
+    pace = passage.time / (time.monotonic() - began)
+    stack.walk(0.0)
+    stack.end_goal()
+    return Record(task, passage, ended, list(stack.recoveries), stack.slow_cycles, pace)
 
 
-def drive_task(stack: NavigationStack, task: Task, judge: Judge) -> DriveResult:
-    """Drive from start to goal, or as far as the robot gets; the judge gets all samples."""
-    ended, pace = _watch(stack, judge, task)
-    straight, outcome = math.dist(task.start[:2], task.goal[:2]), _outcome(judge, ended, task.goal)
-    if outcome == yard_judge.NOT_THERE:
-        ended = f"from {judge.off(task.goal):.2f} m away"
-    return DriveResult(
-        set=task.case.set, seed=task.case.seed, repeat=task.case.repeat, outcome=outcome,
-        why=None if ended == yard_judge.REACHED else ended, time=round(judge.time, 2),
-        distance=round(judge.distance, 3), straight_time=round(straight / ROBOT_SPEED, 2),
-        shortest_time=round(task.shortest / ROBOT_SPEED, 2),
-        to_obstacles=_known(judge.to_obstacles), to_person=_known(judge.to_person),
-        recoveries=list(stack.recoveries), slow_cycles=stack.slow_cycles,
-        real_time_factor=round(pace, 2), drawn=task.drawn)
-
-
-def _watch(stack: NavigationStack, judge: Judge, task: Task) -> tuple[str, float]:
-    """Watch until the goal has ended; returns how, and the real-time factor."""
+def _watch(stack: NavigationStack, passage: Passage, task: Task) -> str:
+    """Watch until the goal has ended; returns how."""
     stack.send(task.goal)
-    began, ended = time.monotonic(), None
-    walk, walking = task.walk, None  # None: the person waits
+    walk, walking, ended = task.walk, None, None  # None: the person waits
     while ended is None:
         ended = stack.result()  # before the samples, so that all of those before the end count
         for sample in stack.samples(LOOK_PERIOD):
-            judge.see(sample)
+            passage.see(sample)
             if walk and walking is None and sample.robot[0] >= walk.trigger:
                 walking = True
                 stack.walk(walk.speed)
-            elif walking and math.dist(sample.person[:2], walk.begin[:2]) > 2 * APPROACH:
+            elif walking and math.dist(sample.person[:2], walk.begin[:2]) > 2 * crossing.APPROACH:
                 walking = False
                 stack.walk(0.0)
-        if judge.contact or judge.time > LIMIT:
-            ended = judge.contact or f"not there within {LIMIT:.0f} s"
-    wall = time.monotonic() - began
-    if walk:
-        stack.walk(0.0)
-    stack.end_goal()
-    return ended, judge.time / wall
-
-
-def _outcome(judge: Judge, ended: str, goal: Place) -> str:
-    if judge.contact == WALKED_INTO_ROBOT:
-        return yard_judge.WALKED_INTO
-    if judge.contact:
-        return yard_judge.TOUCHED
-    if ended == yard_judge.REACHED:
-        return yard_judge.REACHED if judge.off(goal) <= NEAR else yard_judge.NOT_THERE
-    return yard_judge.LATE if judge.time > LIMIT else yard_judge.GIVEN_UP
-
-
-def _known(air: float) -> float | None:
-    return None if math.isinf(air) else round(air, 4)
+        if passage.contact or passage.time > LIMIT:
+            ended = passage.contact or f"not there within {LIMIT:.0f} s"
+    return ended

@@ -56,6 +56,11 @@ def spawn_urdf(name: str, text: str, namespace: str, x: float, y: float) -> None
     call("/gazebo/spawn_urdf_model", SpawnModel, name, text, namespace, pose, "world")
 
 
+def spawn_sdf(name: str, text: str, place: Place) -> None:
+    """Spawn a model at a place in the world."""
+    call("/gazebo/spawn_sdf_model", SpawnModel, name, text, "", pose_message(place), "world")
+
+
 def delete(name: str) -> None:
     """Delete a model."""
     call("/gazebo/delete_model", DeleteModel, name)
