@@ -21,6 +21,7 @@ from evaluation.lane_encounters import (
 )
 from evaluation.lane_trials import (
     BOUNDS,
+    PEOPLE,
     LaneComparison,
     LaneTrial,
     encounter_table,
@@ -126,7 +127,7 @@ def test_seeds_differ_within_the_bounds():
 
 
 def test_the_command_line_of_a_drive_with_people_records_them(tmp_path):
-    people = lane_case("skeleton", 3, people=True)
+    people = lane_case("skeleton", 3, PEOPLE)
     outing = LaneTrial().outing(tmp_path, people)
     words = outing.arguments(3, tmp_path / "w")
     assert f"record:={outing.out / 'poses.txt'}" in words and "near:=3" in words

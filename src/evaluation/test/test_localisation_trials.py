@@ -43,8 +43,8 @@ def without(count, kind, took=None):
 def test_what_is_tried_by_default_and_when_asked_for():
     trial = LocalisationTrial()
     cases = trial.cases(trial.parse([]))
-    assert [(each.name, each.amount) for each in cases[-2:]] == [("tracking", 300), ("load", 60)]
-    assert [each.amount for each in cases[:-2]] == [*range(1, 21), *range(1, 11)]
+    assert [(each.name, each.seconds) for each in cases[-2:]] == [("tracking", 300), ("load", 60)]
+    assert [each.seed for each in cases[:-2]] == [*range(1, 21), *range(1, 11)]
     assert trial.parse(["--kidnaps", "0", "--real-time-factor", "2.5"]).real_time_factor == 2.5
 
 
@@ -116,9 +116,9 @@ def test_found_is_who_was_right_for_long_enough():
 
 def test_a_long_drive_is_judged_by_what_it_is_for():
     errors = np.array([[0.02, np.radians(1.0)], [0.06, np.radians(3.0)]])
-    tracking, load = (Record(LocalisationCase(kind, kind, 60), np.zeros(3), np.arange(2.0), errors,
-                             simulated=50.0, wall=100.0, driven=12.0, cpu=5.0)
-                      for kind in ("tracking", "load"))
+    tracking, load = (
+        Record(LocalisationCase(kind, kind, seconds=60), np.zeros(3), np.arange(2.0), errors,
+               simulated=50.0, wall=100.0, driven=12.0, cpu=5.0) for kind in ("tracking", "load"))
     trial = LocalisationTrial()
     assert trial.judge(tracking) == Tracking(60, 12.0, *map(pytest.approx, (0.04, 2.0, 0.06, 3.0)))
     assert trial.judge(load) == Load(2000, 50.0, 100.0, 10.0)

@@ -54,7 +54,8 @@ def test_the_start_is_beside_and_along_the_line():
 
 
 def test_the_course_run_of_a_lap_is_one_that_course_run_and_the_launch_file_know():
-    case = trial_module.RaceCase("a lap", trial_module.RACETRACK, 5, "lane_follow.py")
+    case = trial_module.RaceCase("a lap", trial_module.RACETRACK, 5,
+                                 follower="lane_follow.py")
     words = trial_module.RaceTrial().outing(Path("/o"), case).arguments(5, Path("/w.world"))
     found = CourseRun.parse(words)
     assert (found.fast, found.video, found.seed, found.camera) == (True, False, 5, None)
@@ -92,7 +93,7 @@ def stand_in(monkeypatch, code: int, report: dict | None = None, says: str = "")
 
 def drive(out: Path, follower: str = "lane_follow.py") -> Lap:
     """One lap on the racetrack, of seed 4."""
-    case = trial_module.RaceCase(f"{follower} racetrack 4", "racetrack", 4, follower)
+    case = trial_module.RaceCase(f"{follower} racetrack 4", "racetrack", 4, follower=follower)
     with Session(out) as session:
         trial = trial_module.RaceTrial()
         return trial.judge(trial.drive(session, case))

@@ -125,18 +125,10 @@ TASKS = {
 
 
 @dataclass(frozen=True)
-class RaceCase(Case):
-    """One drive."""
-
-    mission: str
-    seed: int
-
-
-@dataclass(frozen=True)
 class Record:
     """What happened in one drive."""
 
-    case: RaceCase
+    case: Case
     light: float  # factor on the world's own light
     samples: list[Sample]
     touched: dict[str, float]  # models, with the time of first contact, s
@@ -185,13 +177,13 @@ class RaceTrial(Trial):
     def check(self, options: argparse.Namespace) -> None:
         one_of("mission", "MISSION", TASKS, options.mission)
 
-    def cases(self, options: argparse.Namespace) -> list[RaceCase]:
+    def cases(self, options: argparse.Namespace) -> list[Case]:
         seeds = range(options.first_seed, options.first_seed + options.seeds)
-        return [RaceCase(f"{options.mission}-{seed}", options.mission, seed) for seed in seeds]
+        return [Case(f"{options.mission}-{seed}", options.mission, seed) for seed in seeds]
 
-    def drive(self, session: Session, case: RaceCase) -> Record:
+    def drive(self, session: Session, case: Case) -> Record:
         stack = session.once(lambda: AutoraceStack(session.launched("robot")))
-        task, draw = TASKS[case.mission], random.Random(case.seed)
+        task, draw = TASKS[case.set], random.Random(case.seed)
         light = round(draw.uniform(0.6, 1.0), 2)
         x, y, yaw = (value + draw.uniform(-wide, wide) for value, wide in
                      zip(task.start, (0.03, 0.03, 0.08), strict=True))
@@ -208,9 +200,9 @@ class RaceTrial(Trial):
         case, samples = record.case, record.samples
         path = [(round(each.x, 3), round(each.y, 3)) for each in samples[::4]]
         return DriveResult(
-            case.name, case.mission, case.seed, record.light,
+            case.name, case.set, case.seed, record.light,
             round(samples[-1].time - samples[0].time, 1),
-            tuple(score(samples, record.touched, TASKS[case.mission].missions)), path)
+            tuple(score(samples, record.touched, TASKS[case.set].missions)), path)
 
     def table(self, results: Sequence[DriveResult]) -> str:
         rows = [("mission", "passed", "after s", "contacts", "why not")]

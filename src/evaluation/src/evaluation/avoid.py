@@ -58,13 +58,6 @@ class DriveResult:
                 f" nearest {self.nearest:.2f} m")
 
 
-@dataclass(frozen=True)
-class Hall(Case):
-    """The hall of a seed."""
-
-    seed: int
-
-
 class AvoidTrial(Trial):
     """Every hall must be driven through without a contact."""
 
@@ -84,11 +77,11 @@ class AvoidTrial(Trial):
         scripts = (find_package("learning_laser") / "scripts").glob("*.py")
         one_of("avoider", "--avoider", sorted(each.name for each in scripts), options.avoider)
 
-    def cases(self, options: argparse.Namespace) -> list[Hall]:
+    def cases(self, options: argparse.Namespace) -> list[Case]:
         first = options.first_seed
-        return [Hall(f"hall-{seed}", seed) for seed in range(first, first + options.seeds)]
+        return [Case(f"hall-{seed}", seed=seed) for seed in range(first, first + options.seeds)]
 
-    def drive(self, session: Session, case: Hall) -> tuple[Hall, list[dict]]:
+    def drive(self, session: Session, case: Case) -> tuple[Case, list[dict]]:
         """The case, and the simulator's states up to the drive's end."""
         folder = session.out / "halls"
         folder.mkdir(exist_ok=True)
@@ -101,7 +94,7 @@ class AvoidTrial(Trial):
         finally:
             session.family.stop()
 
-    def judge(self, record: tuple[Hall, list[dict]]) -> DriveResult:
+    def judge(self, record: tuple[Case, list[dict]]) -> DriveResult:
         case, states = record
         return scored(case.name, case.seed, states)
 

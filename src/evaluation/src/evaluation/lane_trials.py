@@ -13,28 +13,11 @@ from lane_keeping.world.scenery import load_crossings
 from lane_keeping.world.timing import ms_a_frame
 from racecar_description.track.track_file import load_track_file
 
+from evaluation import lane_encounters, lap_trial
 from evaluation.command_line import Parser, one_of
-from evaluation.lane_encounters import (
-    KEPT_OFF,
-    MOVES_ON,
-    TOUCHED,
-    Encounter,
-    judge,
-    nearest_ever,
-    read_recording,
-)
+from evaluation.lane_encounters import Encounter
 from evaluation.lap import Bounds, Disturbance, draw
-from evaluation.lap_trial import (
-    COUNTS,
-    FIGURES,
-    LapDrive,
-    LapRecord,
-    LapTrial,
-    Outing,
-    Venue,
-    seen,
-    summary,
-)
+from evaluation.lap_trial import LapDrive, LapRecord, LapTrial, Outing, Venue
 from evaluation.picture import chart
 from evaluation.report import cell, grouped, table, table_of
 from evaluation.trial import REPORT, Case
@@ -59,7 +42,7 @@ class LaneDrive(LapDrive):
     @property
     def name(self) -> str:
         """Its case's name."""
-        return f"{self.method} {'people' if self.people else 'laps'}-{self.seed}"
+        return f"{self.method} {PEOPLE if self.people else LAPS}-{self.seed}"
 
     @property
     def line(self) -> str:
@@ -75,24 +58,25 @@ class LaneDrive(LapDrive):
     @property
     def kept_clear(self) -> bool:
         """Whether nobody was touched in the whole drive; False if the distance is unknown."""
-        return self.nearest_person is not None and self.nearest_person >= TOUCHED
+        return self.nearest_person is not None and self.nearest_person >= lane_encounters.TOUCHED
 
 
 def from_report(report: dict, method: str, seed: int, disturbance: Disturbance,
                 people: bool) -> LaneDrive:
     """A drive from course_run's report.json."""
-    return LaneDrive(**seen(report, seed, disturbance), method=method, people=people,
+    return LaneDrive(**lap_trial.seen(report, seed, disturbance), method=method, people=people,
                      laps_wanted=report["laps_wanted"], laps_closed=report["laps_closed"])
 
 
 def lap_table(drives: Sequence[LaneDrive], ms_a_frame: dict[str, float] | None = None) -> str:
     """A row for each method; figures are of closed laps."""
-    columns = {"method": lambda found: found["method"], "laps closed": COUNTS["closed"],
-               "within limits": COUNTS["within limits"], **FIGURES}
+    counts = lap_trial.COUNTS
+    columns = {"method": lambda found: found["method"], "laps closed": counts["closed"],
+               "within limits": counts["within limits"], **lap_trial.FIGURES}
     if ms_a_frame:
         columns["ms a frame"] = lambda found: cell(ms_a_frame.get(found["method"]))
     methods = grouped(drives, lambda drive: drive.method)
-    return table_of(columns, [{"method": method, **summary(found)}
+    return table_of(columns, [{"method": method, **lap_trial.summary(found)}
                               for method, found in methods.items()])
 
 
@@ -113,15 +97,16 @@ def encounter_table(drives: Sequence[LaneDrive]) -> str:
     rows = [
         ["demanded", "kept", "worst"],
         ["no contact", f"{len(met) - touched} of {len(met)}", f"{nearest:.2f} m, over all drives"],
-        [f"{KEPT_OFF:g} m from person and zebra", kept("stood_off"),
+        [f"{lane_encounters.KEPT_OFF:g} m from person and zebra", kept("stood_off"),
          f"{min(each.nearest for each in met):.2f} m; stood {stood}"],
-        [f"moves on within {MOVES_ON:g} s", kept("moved_on"),
+        [f"moves on within {lane_encounters.MOVES_ON:g} s", kept("moved_on"),
          f"{max(starts):.2f} s" if starts else "-"],
         ["all of it", kept("passed"), ""],
     ]
     return table(rows)
 
 
+LAPS, PEOPLE = "laps", "people"  # the two sets of drives
 LAPS_WITH_PEOPLE = 4  # in a row; starting a simulator takes as long as a quarter of a lap
 PEOPLE_FROM = 500  # first seed of the drives with people
 BOUNDS = Bounds(sideways=0.05, along=0.0, turn=0.1, camera_noise=(0.0, 0.02), light=(0.6, 1.4))
@@ -129,20 +114,16 @@ NEAR = 3.0  # m: people set off once the car is this close, so that they meet
 LONGEST_LAP = 240.0  # s, simulated
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class LaneCase(Case):
-    """A drive: method's name, seed, laps in a row, and whether people cross."""
+    """A drive by a method."""
 
     method: str
-    seed: int
-    laps: int
-    people: bool
 
 
-def lane_case(method: str, seed: int, people: bool = False) -> LaneCase:
+def lane_case(method: str, seed: int, kind: str = LAPS) -> LaneCase:
     """The case of one lap without people, or of several with people."""
-    name = f"{method} {'people' if people else 'laps'}-{seed}"
-    return LaneCase(name, method, seed, LAPS_WITH_PEOPLE if people else 1, people)
+    return LaneCase(f"{method} {kind}-{seed}", kind, seed, method=method)
 
 
 class LaneDrives(LapTrial):
@@ -154,29 +135,32 @@ class LaneDrives(LapTrial):
         """With people, poses.txt is written beside the report."""
         lit = out / "drives" / case.name.partition(" ")[2]
         folder = lit / case.method
-        package, course = find_package("lane_keeping"), "lane" if case.people else "lane_empty"
+        people = case.set == PEOPLE
+        package, course = find_package("lane_keeping"), "lane" if people else "lane_empty"
         venue = Venue(package / "worlds" / f"{course}.world", load_course(course).track_path(),
                       package / "models")
         options, record = (), ()
-        if case.people:
+        if people:
             options = ("--launch", "evaluation", "lane.launch")
             record = (f"near:={NEAR:g}", f"record:={folder / 'poses.txt'}")
         return Outing(f"{case.method}, seed {case.seed}", course, f"{case.method}.py", venue, lit,
-                      folder, draw(case.seed, BOUNDS), LONGEST_LAP, case.laps, options, record)
+                      folder, draw(case.seed, BOUNDS), LONGEST_LAP,
+                      LAPS_WITH_PEOPLE if people else 1, options, record)
 
     def judge(self, record: LapRecord) -> LaneDrive:
         case, outing = record.case, record.outing
-        found = from_report(record.report, case.method, case.seed, outing.disturbance, case.people)
-        if not case.people:
+        people = case.set == PEOPLE
+        found = from_report(record.report, case.method, case.seed, outing.disturbance, people)
+        if not people:
             return found
-        recording = read_recording(outing.out / "poses.txt")
+        recording = lane_encounters.read_recording(outing.out / "poses.txt")
         lane_half = load_track_file(outing.venue.track).lane_width
         try:
-            met = judge(recording, load_crossings(), lane_half)
+            met = lane_encounters.judge(recording, load_crossings(), lane_half)
         except SettingsError as error:
             raise RunError(str(error)) from error
-        return replace(found, nearest_person=round(nearest_ever(recording), 3),
-                       encounters=tuple(met))
+        nearest = lane_encounters.nearest_ever(recording)
+        return replace(found, nearest_person=round(nearest, 3), encounters=tuple(met))
 
     def earlier(self, options: argparse.Namespace) -> list[LaneDrive]:
         """Results so far; it is no error if there are none."""
@@ -206,11 +190,11 @@ class LaneTrial(LaneDrives):
     def cases(self, options: argparse.Namespace) -> list[LaneCase]:
         """Includes at most as many drives with people as encounters are wanted."""
         return [*(lane_case(options.method, seed) for seed in range(options.seeds)),
-                *(lane_case(options.method, PEOPLE_FROM + number, people=True)
+                *(lane_case(options.method, PEOPLE_FROM + number, PEOPLE)
                   for number in range(options.crossings))]
 
     def is_needed(self, case: LaneCase, results: Sequence[LaneDrive]) -> bool:
-        return not case.people or count_met(results) < self.options.crossings
+        return case.set == LAPS or count_met(results) < self.options.crossings
 
     def passed(self, results: Sequence[LaneDrive]) -> bool:
         if count_met(results) < self.options.crossings:

@@ -41,10 +41,9 @@ call_service = partial(simulator.call, wait=STILL_LIMIT)
 
 @dataclass(frozen=True)
 class LocalisationCase(Case):
-    """One robot to be localised, or one drive."""
+    """One robot to be localised, whose number is the seed, or one long drive."""
 
-    kind: str
-    amount: int  # its number, or s, simulated
+    seconds: int = 0  # of a long drive, simulated
 
 
 @dataclass(frozen=True)
@@ -180,7 +179,7 @@ CLEAR_AHEAD = 0.8  # m, above which it goes straight on again
 
 def find(stack: LocalisationStack, case: LocalisationCase) -> Record:
     """Global localisation: a robot at an unknown place in the house."""
-    random = np.random.default_rng([stack.seed, case.amount, 0])
+    random = np.random.default_rng([stack.seed, case.seed, 0])
     place = _draw_place(stack.ground, random)
     stack.put(place)
     stack.forget()
@@ -189,10 +188,10 @@ def find(stack: LocalisationStack, case: LocalisationCase) -> Record:
 
 def kidnap(stack: LocalisationStack, case: LocalisationCase) -> Record:
     """Kidnapped robot: a localised robot is moved elsewhere while it drives."""
-    random = np.random.default_rng([stack.seed, case.amount, 1])
+    random = np.random.default_rng([stack.seed, case.seed, 1])
     _begin_known(stack, random)
     with wandering(stack.seed, stack.may_go_on):
-        _watch_for(stack, SETTLE, f"before {KIDNAPS} {case.amount}",
+        _watch_for(stack, SETTLE, f"before {KIDNAPS} {case.seed}",
                    "driving until it is carried away")
     place = _draw_place(stack.ground, random, stack.watch.records.true_pose)
     stack.put(place)
@@ -204,16 +203,16 @@ def follow(stack: LocalisationStack, case: LocalisationCase) -> Record:
 
     CPU load is measured with a constant number of particles, at real-time pace.
     """
-    loaded = case.kind == LOAD
+    loaded = case.set == LOAD
     if loaded:
         stack.set_pace(1.0)
     place = _begin_known(stack, np.random.default_rng([stack.seed, 0, 3 if loaded else 2]))
     if loaded:
         stack.set_particles(PARTICLES)
     with wandering(stack.seed, stack.may_go_on):
-        _watch_for(stack, SETTLE, case.kind, "finding itself")
+        _watch_for(stack, SETTLE, case.set, "finding itself")
         before = stack.meters()
-        _watch_for(stack, case.amount, case.kind, "driving")
+        _watch_for(stack, case.seconds, case.set, "driving")
         used = stack.meters() - before
     return Record(case, place, *stack.watch.records.errors(before[0]), 0, *used.tolist())
 
@@ -231,8 +230,8 @@ def _search(stack: LocalisationStack, case: LocalisationCase, place: np.ndarray,
     began = looked = stack.now
     what = "searching"
     with wandering(int(random.integers(1 << 31)), stack.may_go_on):
-        while stack.now - began < LIMITS[case.kind] + HOLD:
-            stack.look(f"{case.kind} {case.amount}", what)
+        while stack.now - began < LIMITS[case.set] + HOLD:
+            stack.look(f"{case.set} {case.seed}", what)
             if stack.now - looked < PERIOD:
                 continue
             looked = stack.now

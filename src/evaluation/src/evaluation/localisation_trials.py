@@ -171,18 +171,18 @@ class LocalisationTrial(Trial):
         found = [LocalisationCase(f"{kind}-{number}", kind, number)
                  for kind, count in ((FINDING, options.starts), (KIDNAPS, options.kidnaps))
                  for number in range(options.first, options.first + count)]
-        return found + [LocalisationCase(kind, kind, seconds) for kind, seconds in (
+        return found + [LocalisationCase(kind, kind, seconds=seconds) for kind, seconds in (
             (TRACKING, options.tracking), (LOAD, options.load)) if seconds]
 
     def drive(self, session: Session, case: LocalisationCase) -> Record:
         options = self.options
         stack = session.once(lambda: _bring_up(session, options))
-        to_be_found = case.kind in (FINDING, KIDNAPS)
+        to_be_found = case.set in (FINDING, KIDNAPS)
         stack.use_odometry(by_wheels=to_be_found or options.wheel_odometry)
-        return RUNS[case.kind](stack, case)
+        return RUNS[case.set](stack, case)
 
     def judge(self, record: Record) -> Result:
-        kind, errors = record.case.kind, record.errors
+        kind, errors = record.case.set, record.errors
         if kind in LIMITS:
             return _searched(record)
         if kind == LOAD:
@@ -191,7 +191,7 @@ class LocalisationTrial(Trial):
         if not len(errors):
             raise RunError("amcl said no pose while it should have tracked the robot")
         (off, turn), (largest, largest_turn) = errors.mean(axis=0), errors.max(axis=0)
-        return Tracking(record.case.amount, record.driven, float(off), float(np.degrees(turn)),
+        return Tracking(record.case.seconds, record.driven, float(off), float(np.degrees(turn)),
                         float(largest), float(np.degrees(largest_turn)))
 
     def passed(self, results: Sequence[Result]) -> bool:
@@ -241,7 +241,7 @@ def _searched(record: Record) -> Search:
     held = since is not None and times[-1] - since >= HOLD
     off, turned = (round(float(each), 4) for each in errors[-1]) if len(errors) else (None, None)
     return Search(
-        record.case.kind, record.case.amount, tuple(np.round(record.start, 3).tolist()),
+        record.case.set, record.case.seed, tuple(np.round(record.start, 3).tolist()),
         round(since, 2) if held else None, off,
         turned if turned is None else round(float(np.degrees(turned)), 3), record.touched)
 

@@ -14,19 +14,10 @@ from racecar_description.track.from_numbers import from_seed
 from racecar_description.track.model_files import write_course
 from racecar_description.track.wishes import Wishes
 
+from evaluation import lap_trial
 from evaluation.command_line import Parser
 from evaluation.lap import RACE, draw
-from evaluation.lap_trial import (
-    COUNTS,
-    FIGURES,
-    LapDrive,
-    LapRecord,
-    LapTrial,
-    Outing,
-    Venue,
-    seen,
-    summary,
-)
+from evaluation.lap_trial import LapDrive, LapRecord, LapTrial, Outing, Venue
 from evaluation.picture import chart, write_tiles
 from evaluation.report import grouped, table_of
 from evaluation.trial import Case
@@ -64,7 +55,8 @@ class Lap(LapDrive):
 
 
 COLUMNS = {"follower": lambda each: each["follower"], "laps on": lambda each: each["set"],
-           **COUNTS, **FIGURES, "worst seed": lambda each: str(each["worst_seed"])}
+           **lap_trial.COUNTS, **lap_trial.FIGURES,
+           "worst seed": lambda each: str(each["worst_seed"])}
 
 
 def summarize(laps: Sequence[Lap]) -> list[dict]:
@@ -73,7 +65,7 @@ def summarize(laps: Sequence[Lap]) -> list[dict]:
     `worst_seed`: of a lap that was not completed, else of that with the largest RMS error.
     """
     groups = grouped(laps, lambda lap: (lap.follower, lap.set))
-    return [{**summary(group), "follower": follower, "set": name, "worst_seed": max(
+    return [{**lap_trial.summary(group), "follower": follower, "set": name, "worst_seed": max(
         group, key=lambda lap: (not lap.closed, lap.rms_lateral)).seed}
         for (follower, name), group in groups.items()]
 
@@ -138,12 +130,10 @@ FOLLOWERS = ("lane_follow.py", "lane_follow_p.py")
 LONGEST_LAP = 120.0  # s, simulated
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class RaceCase(Case):
     """One lap of one follower."""
 
-    set: str
-    seed: int
     follower: str
 
 
@@ -173,7 +163,7 @@ class RaceTrial(LapTrial):
     def cases(self, options: argparse.Namespace) -> list[RaceCase]:
         """The followers alternate."""
         followers = tuple(dict.fromkeys(options.followers))
-        return [RaceCase(f"{follower} {kind} {seed}", kind, seed, follower)
+        return [RaceCase(f"{follower} {kind} {seed}", kind, seed, follower=follower)
                 for kind, first, count in ((RACETRACK, options.first_seed, options.seeds),
                                            (RANDOM_TRACKS, options.first_track, options.tracks))
                 for seed, follower in itertools.product(range(first, first + count), followers)]
@@ -189,8 +179,8 @@ class RaceTrial(LapTrial):
     def judge(self, record: LapRecord) -> Lap:
         case, outing, report = record.case, record.outing, record.report
         folder = Path(*outing.out.parts[-3:])  # laps/TRACK-SEED/FOLLOWER
-        return Lap(**seen(report, case.seed, outing.disturbance), follower=report["follower"],
-                   set=case.set, track=outing.venue.world.stem, folder=str(folder),
+        return Lap(**lap_trial.seen(report, case.seed, outing.disturbance), set=case.set,
+                   follower=report["follower"], track=outing.venue.world.stem, folder=str(folder),
                    time=report["laps"][0]["time_s"] if report["laps"] else None)
 
     def passed(self, results: Sequence[Lap]) -> bool:

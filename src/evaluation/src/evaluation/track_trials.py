@@ -46,14 +46,6 @@ SETS = {kind.name: kind for kind in (
 
 
 @dataclass(frozen=True)
-class TrackCase(Case):
-    """One drive."""
-
-    set: str
-    seed: int
-
-
-@dataclass(frozen=True)
 class DriveResult:
     """One drive's report, as `make track` writes it."""
 
@@ -101,9 +93,9 @@ class TrackTrial(Trial):
         if options.seeds == 0:
             raise RunError("--seeds 0: nothing to drive")
 
-    def cases(self, options: argparse.Namespace) -> list[TrackCase]:
+    def cases(self, options: argparse.Namespace) -> list[Case]:
         first = options.first_seed
-        return [TrackCase(f"{kind.name}/{seed}", kind.name, seed)
+        return [Case(f"{kind.name}/{seed}", kind.name, seed)
                 for kind in SETS.values() if kind.name in options.sets
                 for seed in range(first, first + math.ceil(options.seeds / kind.cases))]
 
@@ -114,7 +106,7 @@ class TrackTrial(Trial):
         return [DriveResult(case.name, case.set, report) for case, report in found
                 if report["outcome"] != EARLY]
 
-    def drive(self, session: Session, case: TrackCase) -> tuple[TrackCase, dict]:
+    def drive(self, session: Session, case: Case) -> tuple[Case, dict]:
         """The case, and the drive's report."""
         kind = SETS[case.set]
         folder = session.out / case.name
@@ -124,7 +116,7 @@ class TrackTrial(Trial):
             "--no-video", "--out", str(folder)], folder)
         return case, process.report(LIMIT, f"{case.set}, seed {case.seed}")
 
-    def judge(self, record: tuple[TrackCase, dict]) -> DriveResult:
+    def judge(self, record: tuple[Case, dict]) -> DriveResult:
         case, report = record
         return DriveResult(case.name, case.set, report)
 

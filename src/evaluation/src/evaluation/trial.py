@@ -29,6 +29,8 @@ class Case:
     """One case: picklable; run twice, it gives the same files and the same result."""
 
     name: str  # unique among the cases; also that of its result
+    set: str = ""  # those of a set are summed up together
+    seed: int = 0
 
 
 class Trial(ABC):

@@ -213,9 +213,7 @@ YARDS, CROSSINGS = "yards", "crossings"  # the two sets of drives
 class YardCase(Case):
     """One drive."""
 
-    set: str
-    seed: int
-    repeat: int
+    repeat: int = 0
 
 
 @dataclass(frozen=True)

@@ -46,13 +46,12 @@ SANDBOXED = {kind.value: "without a sandbox" if kind is Kind.NONE else "in a san
 TRIES = 3  # of a case in which the course itself could not be run
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class MarkedCase(Case):
     """One submission on one track with one seed."""
 
     student: str
     track: int  # 0: the course's own
-    seed: int
 
 
 @dataclass(frozen=True)
@@ -108,7 +107,7 @@ class MarkingTrial(Trial):
 
     def cases(self, options: argparse.Namespace) -> list[MarkedCase]:
         rules = options.rules
-        return [MarkedCase(f"{student}/{track}-{seed}", student, track, seed)
+        return [MarkedCase(f"{student}/{track}-{seed}", student=student, track=track, seed=seed)
                 for student in options.found for track in range(1 + len(rules.tracks))
                 for seed in range(rules.first_seed, rules.first_seed + rules.seeds)]
 

@@ -14,11 +14,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import ndimage
 
 from nav_algorithms import likelihood_field
 
 FILLED, EMPTIED = 5, 1  # least filled neighbours, of eight, that fill a cell; most that empty it
-STRAIGHT_AND_DIAGONAL = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]
+AROUND = np.array([(1, 1, 1), (1, 0, 1), (1, 1, 1)])
+STRAIGHT_AND_DIAGONAL = (np.argwhere(AROUND) - 1).tolist()
 
 
 def grow(random: np.random.Generator, rows: int, columns: int, fill: float, smoothing: int
@@ -35,17 +37,12 @@ def grow(random: np.random.Generator, rows: int, columns: int, fill: float, smoo
 def neighbours(field: np.ndarray) -> np.ndarray:
     """Number of filled neighbours (of eight) of each cell; those beyond the walls are filled."""
     framed = np.pad(np.pad(field, ((0, 0), (1, 1))), ((1, 1), (0, 0)), constant_values=True)
-    rows, columns = field.shape
-    return sum(framed[1 + i:1 + i + rows, 1 + j:1 + j + columns].astype(int)
-               for i, j in STRAIGHT_AND_DIAGONAL)
+    return ndimage.convolve(framed.astype(int), AROUND)[1:-1, 1:-1]
 
 
 def blocked(field: np.ndarray, reach: int) -> np.ndarray:
     """Where the robot's centre cannot be: a cylinder is within a square of `reach` cells around."""
-    framed = np.pad(field, reach)
-    rows, columns = field.shape
-    shifts = range(2 * reach + 1)
-    return np.logical_or.reduce([framed[i:i + rows, j:j + columns] for i in shifts for j in shifts])
+    return ndimage.binary_dilation(field, np.ones(2 * (2 * reach + 1,)))
 
 
 def shortest_path(closed: np.ndarray, start: tuple[int, int], goal: tuple[int, int]
