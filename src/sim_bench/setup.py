@@ -4,6 +4,6 @@ from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 
 setup(**generate_distutils_setup(
-    packages=["sim_bench", "sim_bench.parts", "sim_bench.probes"],
+    packages=["sim_bench", "sim_bench.parts"],
     package_dir={"": "src"},
 ))

@@ -2,27 +2,31 @@
 
 import importlib
 import json
+import os
+import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
-from sim_bench.acceptance import CRITERIA, Criterion, judge
-from sim_bench.figures import Figure, figure, percentile, ratio
-from sim_bench.frame_age import frame_ages, real_time_factor
-from sim_bench.options import PARTS, parse_options
+from sim_bench.acceptance import Criterion, criteria, judge
+from sim_bench.figures import Figure, figure, ratio
+from sim_bench.follower import frame_ages, real_time_factor
+from sim_bench.own_process import OwnProcess
 from sim_bench.parts import growth, memory, robots, step
-from sim_bench.probes.clock import ClockStatistics
+from sim_bench.probes import ClockStatistics
 from sim_bench.results import (
     PartResult,
     Results,
     acceptance_table,
     figure_table,
+    write_chart,
     write_json,
 )
-from sim_bench.ros_run import read_lines
-from sim_bench.stages import stage_figures, stages
+from sim_bench.ros_run import read_lines, stage_figures, stages
+from sim_bench.settings import PARTS, parse
 
 from evaluation.command_line import NOT_RUN
 from run_session import processes
@@ -42,8 +46,8 @@ def results(*figures) -> Results:
 
 
 def test_without_options_everything_is_measured_in_the_usual_order():
-    assert parse_options([]).parts == PARTS
-    assert parse_options(["--only", "step, renderer"]).parts == ("renderer", "step")
+    assert parse([]).parts == PARTS
+    assert parse(["--only", "step, renderer"]).parts == ("renderer", "step")
 
 
 @pytest.mark.parametrize(
@@ -51,14 +55,14 @@ def test_without_options_everything_is_measured_in_the_usual_order():
     [
         (["--only", "step,nothing"], "nothing"),
         (["--memory-s", "much"], "much"),
-        (["--memory-s", "1"], "20 or more"),
+        (["--memory-s", "1"], "20 to"),
         (["--memory-s", "nan"], "nan"),
         (["--fast"], "--fast"),
     ],
 )
 def test_a_mistake_on_the_command_line_is_one_line(arguments, said):
     with pytest.raises(RunError) as raised:
-        parse_options(arguments)
+        parse(arguments)
     assert said in str(raised.value)
     assert "\n" not in str(raised.value)
 
@@ -97,12 +101,6 @@ def test_a_ratio_compares_runs_that_were_taken_side_by_side():
         ratio("name", [1.0, 2.0], [1.0])
 
 
-def test_percentile_by_nearest_rank():
-    values = range(1, 1001)
-    assert (percentile(values, 0.999), percentile(values, 0.5)) == (999, 500)
-    assert percentile([7.0], 0.999) == 7.0
-
-
 def test_growth_compares_the_last_tenth_with_the_second():
     caches_fill = [(t, 50 + t) for t in range(10)]
     assert memory.growth_percent(caches_fill + [(t, 100) for t in range(10, 100)]) == 0
@@ -128,19 +126,20 @@ def test_the_grid_leaves_its_middle_free():
 # --- age of frames
 
 
-def clock(pace: float, late: float = 0.0) -> list[tuple[float, float]]:
+def clock(pace: float, late: float = 0.0) -> np.ndarray:
     """/clock at 100 Hz, begun at wall time 50 s; two of three messages arrive late."""
-    return [(50 + i * 0.01 / pace + (late if i % 3 else 0.0), i * 0.01) for i in range(300)]
+    return np.array([(50 + i * 0.01 / pace + (late if i % 3 else 0.0), i * 0.01)
+                     for i in range(300)])
 
 
 @pytest.mark.parametrize("pace", [0.5, 1.0, 4.0])
 def test_a_frames_age_is_from_when_its_moment_was_due(pace):
-    frames = [(50 + 1.0 / pace + 0.030, 1.0), (50 + 1.5 / pace + 0.040, 1.5)]
+    frames = np.array([(50 + 1.0 / pace + 0.030, 1.0), (50 + 1.5 / pace + 0.040, 1.5)])
     assert frame_ages(frames, clock(pace, late=0.040)) == pytest.approx([0.030, 0.040], abs=1e-6)
 
 
 def test_a_frame_without_clock_around_it_has_no_age():
-    assert frame_ages([(60.0, 99.0)], clock(1.0)) == []
+    assert frame_ages(np.array([(60.0, 99.0)]), clock(1.0)) == []
 
 
 def test_the_real_time_factor_is_simulated_time_by_wall_time():
@@ -165,7 +164,7 @@ def test_a_line_that_is_not_whole_yet_is_left_out(tmp_path):
 
 
 def test_criteria_are_of_parts_that_exist_and_have_one_bound():
-    for criterion in CRITERIA:
+    for criterion in criteria():
         assert criterion.figure.partition("/")[0] in PARTS
         assert (criterion.at_least is None) != (criterion.at_most is None)
 
@@ -177,7 +176,7 @@ def test_a_bound_itself_is_enough():
 
 
 def test_only_what_was_measured_is_judged():
-    verdicts = judge(results(figure("ratio.tiny.1920x1080", "x", [30.0])).figures())
+    verdicts = results(figure("ratio.tiny.1920x1080", "x", [30.0])).verdicts()
     assert [verdict.met for verdict in verdicts] == [False]
     assert "MISSED" in acceptance_table(verdicts)
 
@@ -246,9 +245,8 @@ def test_the_table_says_when_others_used_the_machine():
 
 @pytest.mark.parametrize("names", [(), ("frame.ours.640x480", "ratio.tiny.1920x1080")])
 def test_a_chart_is_drawn_of_what_there_is(tmp_path, names):
-    chart = importlib.import_module("sim_bench.chart")
     file = tmp_path / "bench.png"
-    chart.write_chart(results(*(figure(name, "ms", [1.0, 3.0, 2.0]) for name in names)), file)
+    write_chart(results(*(figure(name, "ms", [1.0, 3.0, 2.0]) for name in names)), file)
     assert file.read_bytes().startswith(b"\x89PNG")
 
 
@@ -260,7 +258,7 @@ def test_a_chart_is_drawn_of_what_there_is(tmp_path, names):
     [
         ("python3 -P -m bullet_sim_ros --world w __name:=gazebo __log:=x", "gazebo"),
         ("/usr/bin/python3 /usr/bin/rosmaster --core -p 4000", "rosmaster"),
-        ("python3 -P -m sim_bench.probes.follower out 05follower.py", "follower"),
+        ("python3 -P -m sim_bench.probes follower out 05.py __name:=follower", "follower"),
         ("python3 /usr/bin/roslaunch -p 4000 learning_topic 0course.launch", "roslaunch"),
         ("sh -c something", "its parent"),
     ],
@@ -283,6 +281,16 @@ def test_the_launch_file_spawns_every_robot_in_its_own_namespace():
     text = robots.launch_file_text()
     assert all(f'ns="{name}"' in text for name in robots.NAMES)
     assert text.count("spawn_model") == robots.COUNT
+
+
+def _die() -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_a_crash_in_a_process_of_its_own_is_an_error_and_a_result_is_of_each_process():
+    with OwnProcess("two processes", count=2) as both, pytest.raises(RunError, match="it died"):
+        assert both.call(max, 1, 2) == [2, 2]
+        both.call(_die)
 
 
 def test_a_part_that_fails_is_said_and_the_others_go_on(tmp_path, monkeypatch, capsys):

@@ -174,7 +174,7 @@ def _collect(pid: int) -> None:
 
 
 NODE_NAME = re.compile(r"\b__name:=(\S+)")
-PROGRAM = re.compile(r"(rosmaster|roscore|roslaunch|bench\.probes\.\w+)")
+PROGRAM = re.compile(r"(rosmaster|roscore|roslaunch)")
 
 
 @dataclass(frozen=True)
@@ -206,7 +206,7 @@ def process_name(command_line: str, parent: str) -> str:
     if node:
         return node[1].strip("/")
     programs = PROGRAM.findall(command_line)
-    return programs[-1].rpartition(".")[2] if programs else parent
+    return programs[-1] if programs else parent
 
 
 class CpuMeter:

@@ -77,16 +77,12 @@ def floor_planes(description: WorldDescription) -> list[FloorPlane]:
 
 def render(description: WorldDescription, view: CameraView) -> AnalyticPicture:
     """The floor and the background as a camera above it sees them."""
-    planes = floor_planes(description)
+    planes, size = floor_planes(description), _pixel_size(view)
     background = 255 * np.array(description.scene.background[:3], np.float32)
-    rgb = np.empty((view.height, view.width, 3), np.float32)
-    clear = np.empty((view.height, view.width), bool)
-    for row in range(view.height):
-        size = _pixel_size(view, row)
-        samples = _rows_per_pixel(planes, size)
-        rgb[row] = _row_colours(planes, view, row, samples, background)
-        clear[row] = _row_clear(planes, view, row, size)
-    return AnalyticPicture(rgb, clear & ~_near_horizon(view))
+    rgb = np.stack([
+        _row_colours(planes, view, row, _rows_per_pixel(planes, size[row]), background)
+        for row in range(view.height)])
+    return AnalyticPicture(rgb, _clear(planes, view, size))
 
 
 def difference(picture: np.ndarray, analytic: AnalyticPicture) -> np.ndarray:
@@ -142,16 +138,15 @@ def _edge_distance(texture: np.ndarray, metres_per_texel: float) -> np.ndarray:
     return cv2.distanceTransform((~step).astype(np.uint8), cv2.DIST_L2, 5) * metres_per_texel
 
 
-def _pixel_size(view: CameraView, row: int) -> np.ndarray:
-    """The longest side (m) that each pixel of a row has on the floor; inf in the sky."""
-    columns = np.arange(view.width + 1, dtype=float)
-    upper = floor_points(view, columns, np.full(view.width + 1, float(row)))
-    lower = floor_points(view, columns, np.full(view.width + 1, row + 1.0))
-    along = np.hypot(upper[0] - lower[0], upper[1] - lower[1])
-    across = np.hypot(np.diff(upper[0]), np.diff(upper[1]))
-    met = upper[2] & lower[2]
-    longest = np.maximum(np.maximum(along[1:], along[:-1]), across)
-    return np.where(met[1:] & met[:-1], longest, np.inf)
+def _pixel_size(view: CameraView) -> np.ndarray:
+    """(height, width): the longest side (m) that each pixel has on the floor; inf in the sky."""
+    corners = np.meshgrid(np.arange(view.width + 1.0), np.arange(view.height + 1.0))
+    x, y, met = floor_points(view, *corners)
+    along = np.hypot(np.diff(x, axis=0), np.diff(y, axis=0))
+    across = np.hypot(np.diff(x[:-1], axis=1), np.diff(y[:-1], axis=1))
+    longest = np.maximum(np.maximum(along[:, 1:], along[:, :-1]), across)
+    met = met[:-1] & met[1:]
+    return np.where(met[:, 1:] & met[:, :-1], longest, np.inf)
 
 
 def _rows_per_pixel(planes: list[FloorPlane], size: np.ndarray) -> int:
@@ -187,29 +182,21 @@ def _row_colours(
     return colours.reshape(shape).mean(axis=(0, 2))
 
 
-def _row_clear(
-    planes: list[FloorPlane], view: CameraView, row: int, size: np.ndarray
-) -> np.ndarray:
-    """Which pixels of a row have no edge, of a texture or of a plane, within a filter's reach."""
-    columns = np.arange(view.width) + 0.5
-    x, y, met = floor_points(view, columns, np.full(view.width, row + 0.5))
-    nearest = np.full(view.width, np.inf)
+def _clear(planes: list[FloorPlane], view: CameraView, size: np.ndarray) -> np.ndarray:
+    """Which pixels have no edge, of a texture or of a plane, within a filter's reach, and are not
+    within two of where the floor's first pixel is: (height, width) bool."""
+    centres = np.meshgrid(np.arange(view.width) + 0.5, np.arange(view.height) + 0.5)
+    x, y, met = floor_points(view, *centres)
+    nearest = np.full(x.shape, np.inf)
     for plane in planes:
         u, v = plane.local(x, y)
         border = np.maximum(np.abs(u) - plane.size[0] / 2, np.abs(v) - plane.size[1] / 2)
         nearest = np.minimum(nearest, np.abs(border))
-        inside = plane.inside(u, v)
-        if plane.edge_distance is not None and inside.any():
-            distance = plane.look_up(plane.edge_distance, u[None], v[None])[0]
-            nearest = np.where(inside, np.minimum(nearest, distance), nearest)
+        if plane.edge_distance is not None:
+            distance = plane.look_up(plane.edge_distance, u, v)
+            nearest = np.where(plane.inside(u, v), np.minimum(nearest, distance), nearest)
     sky = ~met & ~np.isfinite(size)
     with np.errstate(invalid="ignore"):
-        return sky | (nearest > FILTER_REACH * size)
-
-
-def _near_horizon(view: CameraView) -> np.ndarray:
-    """Pixels within two of where the floor's first pixel is: (height, width) bool."""
-    columns, rows = np.meshgrid(np.arange(view.width) + 0.5, np.arange(view.height) + 0.5)
-    met = floor_points(view, columns, rows)[2].astype(np.uint8)
-    kernel = np.ones((5, 5), np.uint8)
-    return cv2.dilate(met, kernel) != cv2.erode(met, kernel)
+        clear = sky | (nearest > FILTER_REACH * size)
+    floor, around = met.astype(np.uint8), np.ones((5, 5), np.uint8)
+    return clear & (cv2.dilate(floor, around) == cv2.erode(floor, around))

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
+from dataclasses import replace
 
-import rospkg
-from racecar_description.track.closed_line import Track, load_track
+from driving_courses.course import load_course
+from driving_courses.packages import find_file
+from driving_courses.resources import package_folder, resources
+from racecar_description.track.closed_line import load_track
 
 from bullet_sim.description import SensorDescription
 from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
 from bullet_sim.formats.loading import load_model, load_world
-from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.link import Link
 from bullet_sim.model import Model
@@ -19,6 +19,7 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.world import World
 
+COURSE = load_course("line_follow")
 SETTLING_STEPS = 300
 # The tags of the waffle's drive plugin: what a learner's waffle is driven with.
 WAFFLE_DRIVE = DiffDriveParameters(0.287, 0.066, 1.0, 10.0)
@@ -27,32 +28,19 @@ WAFFLE_DRIVE = DiffDriveParameters(0.287, 0.066, 1.0, 10.0)
 class CourseWorld:
     """The world of 0course.launch. Close it: the engine holds a fixed number of worlds."""
 
-    def __init__(self) -> None:
-        self._packages = rospkg.RosPack()
-        lessons = Path(self._packages.get_path("learning_topic"))
-        self._resources = Resources.from_environment(
-            os.environ,
-            extra_model_paths=[lessons / "models"],
-            extra_resource_paths=[lessons],
-            find_package=self._packages.get_path,
-        )
-        world_file = lessons / "worlds" / "course.world"
-        self.world = World(load_world(world_file, self._resources))
-        self.track: Track = load_track(
-            Path(self._packages.get_path("evaluation")) / "tracks" / "course.yaml"
-        )
-        self._waffle_text = ""
+    def __init__(self, timestep: float | None = None) -> None:
+        """`timestep`: of the engine, s; None: as the world says."""
+        found = resources(COURSE)
+        world = load_world(find_file(COURSE.world), found)
+        if timestep is not None:
+            world = replace(world, physics=replace(world.physics, max_step_size=timestep))
+        self.world = World(world)
+        self.track = load_track(COURSE.track_file)
+        self._waffle = load_model(waffle_text(), found)
 
-    def spawn_waffle(self, name: str = "turtlebot3_waffle", pose: Pose = Pose()) -> Model:
+    def spawn_waffle(self, name: str = COURSE.model, pose: Pose = Pose()) -> Model:
         """A waffle, standing still on its wheels."""
-        if not self._waffle_text:
-            folder = Path(self._packages.get_path("turtlebot3_description"))
-            self._waffle_text = expand(
-                folder / "urdf" / "turtlebot3_waffle.urdf.xacro",
-                find_package=self._packages.get_path,
-            )
-        description = load_model(self._waffle_text, self._resources)
-        model = self.world.spawn(description, pose, name)
+        model = self.world.spawn(self._waffle, pose, name)
         self.world.step(SETTLING_STEPS)
         return model
 
@@ -64,7 +52,7 @@ class CourseWorld:
 
     def view(self, waffle: Model, width: int, height: int) -> CameraView:
         """What the waffle's camera sees now, with another number of pixels."""
-        link, sensor = _sensor_with(waffle, "cameras")
+        link, sensor = sensor_with(waffle, "cameras")
         camera = sensor.cameras[0]
         pose = link.pose * sensor.pose
         return CameraView(width, height, camera.horizontal_fov, camera.near, camera.far, pose)
@@ -74,21 +62,20 @@ class CourseWorld:
         self.world.close()
 
 
-def drive_of(waffle: Model) -> DiffDrive:
-    """The waffle's two driven wheels, as its drive plugin has them."""
-    return DiffDrive(
-        waffle.joint("wheel_left_joint"), waffle.joint("wheel_right_joint"), WAFFLE_DRIVE
-    )
+def waffle_text() -> str:
+    """The waffle's URDF."""
+    return expand(find_file(COURSE.robot), find_package=package_folder)
 
 
-def laser_of(waffle: Model) -> tuple[Link, SensorDescription]:
-    """Link and description of the waffle's laser."""
-    return _sensor_with(waffle, "ray")
+def drive_of(waffle: Model, speed: float, yaw_rate: float) -> DiffDrive:
+    """The waffle's two driven wheels, as its drive plugin has them, commanded m/s and rad/s."""
+    drive = DiffDrive(
+        waffle.joint("wheel_left_joint"), waffle.joint("wheel_right_joint"), WAFFLE_DRIVE)
+    drive.command(speed, yaw_rate)
+    return drive
 
 
-def _sensor_with(model: Model, what: str) -> tuple[Link, SensorDescription]:
-    for link in model.links.values():
-        for sensor in link.description.sensors:
-            if getattr(sensor, what):
-                return link, sensor
-    raise LookupError(f"model {model.name} has no sensor with {what}")
+def sensor_with(model: Model, what: str) -> tuple[Link, SensorDescription]:
+    """The model's first sensor that has `cameras` or `ray`, and its link."""
+    return next((link, sensor) for link in model.links.values()
+                for sensor in link.description.sensors if getattr(sensor, what))

@@ -1,4 +1,4 @@
-"""One measured quantity: the median of several runs, with the least and the greatest of them."""
+"""What was measured: the median of several runs, with the least and the greatest of them."""
 
 from __future__ import annotations
 
@@ -31,11 +31,3 @@ def figure(name: str, unit: str, runs: Iterable[float]) -> Figure:
 def ratio(name: str, numerator: Iterable[float], denominator: Iterable[float]) -> Figure:
     """How many times as much, run by run: the runs that were taken side by side are compared."""
     return figure(name, "x", [a / b for a, b in zip(numerator, denominator, strict=True)])
-
-
-def percentile(values: Iterable[float], share: float) -> float:
-    """The value that this share (0..1) of the values does not exceed, by nearest rank."""
-    ranked = sorted(values)
-    if not ranked:
-        raise ValueError("no percentile of no values")
-    return ranked[max(0, math.ceil(share * len(ranked)) - 1)]

@@ -5,56 +5,53 @@ from __future__ import annotations
 import datetime
 import importlib
 import os
+import platform
 import time
+from pathlib import Path
+
+import psutil
 
 from evaluation.command_line import NOT_RUN, PASSED, complain, run_program
 from run_session.failure import RunError
-from sim_bench import machine
-from sim_bench.acceptance import judge
-from sim_bench.chart import write_chart
-from sim_bench.options import Options, parse_options
+from run_session.processes import processes
+from run_session.session import versions
 from sim_bench.results import (
     PartResult,
     Results,
     acceptance_table,
     figure_table,
+    write_chart,
     write_json,
 )
-from sim_bench.settings import Settings
+from sim_bench.settings import Settings, parse, say
 
 
 def main(arguments: list[str]) -> int:
     """Run the command line; returns the exit code."""
-    return run_program("bench", lambda: _run(parse_options(arguments)))
+    return run_program("bench", lambda: _run(parse(arguments)))
 
 
-def _run(options: Options) -> int:
-    try:
-        options.out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RunError(f"--out {options.out}: {error.strerror}") from error
-    if not os.access(options.out, os.W_OK):
-        raise RunError(f"--out {options.out}: it cannot be written to")
-    settings = Settings(options.quick, options.memory_s, options.out, _say)
+def _run(settings: Settings) -> int:
+    settings.out.mkdir(parents=True, exist_ok=True)
     began = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-    results = Results(began, options.quick, machine.describe())
-    for part in options.parts:
-        _say(f"--- {part}")
+    results, file = Results(began, settings.quick, _machine()), settings.out / "bench.json"
+    write_json(results, file)
+    for part in settings.parts:
+        say(f"--- {part}")
         results.parts.append(_measure(part, settings))
-        print(figure_table(results.parts[-1]), flush=True)
-        write_json(results, options.out / "bench.json")  # an interrupted run keeps what it has
-    verdicts = judge(results.figures())
-    if verdicts:
-        print(acceptance_table(verdicts))
-    write_chart(results, options.out / "bench.png")
-    _say(f"written: {options.out / 'bench.json'}, {options.out / 'bench.png'}")
+        say(figure_table(results.parts[-1]))
+        write_json(results, file)  # an interrupted run keeps what it has
+    if verdicts := results.verdicts():
+        say(acceptance_table(verdicts))
+    write_chart(results, settings.out / "bench.png")
+    say(f"written: {file}, {settings.out / 'bench.png'}")
     return NOT_RUN if any(part.failure for part in results.parts) else PASSED
 
 
 def _measure(part: str, settings: Settings) -> PartResult:
     """One part; its failure does not keep the others from being measured."""
     module = importlib.import_module(f"sim_bench.parts.{part}")
-    began, others = time.monotonic(), machine.Others()
+    began, others = time.monotonic(), _Others()
     try:
         figures, failure = tuple(module.measure(settings)), ""
     except RunError as error:
@@ -63,5 +60,32 @@ def _measure(part: str, settings: Settings) -> PartResult:
     return PartResult(part, figures, time.monotonic() - began, others.percent(), failure)
 
 
-def _say(text: str) -> None:
-    print(text, flush=True)
+def _machine() -> dict:
+    """Processor, cores, memory and versions, for bench.json."""
+    said = Path("/proc/cpuinfo").read_text(encoding="utf-8").partition("model name")[2]
+    return {
+        "processor": said.partition("\n")[0].lstrip("\t: ") or platform.machine(),
+        "cores": len(os.sched_getaffinity(0)),
+        "memory_gb": round(psutil.virtual_memory().total / 1e9, 1),
+        "kernel": platform.release(),
+        "versions": versions(Path(__file__).parent, ()),
+    }
+
+
+class _Others:
+    """Processor time of everything that is neither this process nor started by it."""
+
+    def __init__(self) -> None:
+        self._began, self._spent = time.monotonic(), self._now()
+
+    def percent(self) -> float:
+        """Of one core, since this was made."""
+        return max(0.0, 100 * (self._now() - self._spent) / (time.monotonic() - self._began))
+
+    @staticmethod
+    def _now() -> float:
+        """s since the machine's start, of all cores together."""
+        all_, ours = psutil.cpu_times(), os.times()
+        busy = all_.user + all_.nice + all_.system + all_.irq + all_.softirq
+        ended = ours.user + ours.system + ours.children_user + ours.children_system
+        return busy - ended - sum(process.cpu for process in processes())

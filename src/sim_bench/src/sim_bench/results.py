@@ -1,17 +1,25 @@
-"""What was measured, as bench.json and as tables on the terminal."""
+"""What was measured, as tables on the terminal, bench.json and bench.png."""
 
 from __future__ import annotations
 
-import json
 import textwrap
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+import matplotlib
+
+matplotlib.use("Agg")
+
+from matplotlib import pyplot
+
+from evaluation import report
 from sim_bench.acceptance import Verdict, judge
 from sim_bench.figures import Figure
 
 MUCH = 10.0  # percent of a core, used by others: more than this spoils a measurement
+MET, MISSED = "#3a8f5c", "#c0392b"
+MOST = 4.0  # times its bound, at which a bar is cut off
 
 
 @dataclass(frozen=True)
@@ -34,56 +42,42 @@ class Results:
     machine: dict = field(default_factory=dict)
     parts: list[PartResult] = field(default_factory=list)
 
-    def figures(self) -> dict[str, Figure]:
-        """All figures, by PART/NAME."""
-        return {f"{part.part}/{one.name}": one for part in self.parts for one in part.figures}
+    def verdicts(self) -> list[Verdict]:
+        """On what was measured."""
+        return judge({f"{part.part}/{one.name}": one for part in self.parts
+                      for one in part.figures})
 
 
 def write_json(results: Results, path: Path) -> None:
-    """Write everything; lists of runs stay on one line each."""
-    values = asdict(results)
-    values["acceptance"] = [
-        {
-            "what": verdict.criterion.what,
-            "figure": verdict.criterion.figure,
-            "bound": verdict.criterion.bound,
-            "median": verdict.figure.median,
-            "met": verdict.met,
-            "bound_by": {one.name: one.median for one in verdict.binding},
-        }
-        for verdict in judge(results.figures())
+    """Write all figures with their runs, and the verdicts on them."""
+    verdicts = [
+        {"what": verdict.criterion.what, "figure": verdict.criterion.figure,
+         "bound": verdict.criterion.bound, "median": verdict.figure.median, "met": verdict.met,
+         "bound_by": {one.name: one.median for one in verdict.binding}}
+        for verdict in results.verdicts()
     ]
-    path.write_text(json.dumps(values, indent=1) + "\n", encoding="utf-8")
+    report.write_json({**asdict(results), "acceptance": verdicts}, path)
 
 
 def figure_table(result: PartResult) -> str:
     """One part's figures: median, least, greatest and number of runs."""
     rows = [(result.part, "median", "min", "max", "runs", "unit")]
-    rows += [
-        (f"  {f.name}", _short(f.median), _short(f.min), _short(f.max), str(len(f.runs)), f.unit)
-        for f in result.figures
-    ]
-    lines = _aligned(rows, left={0, 5})
+    rows += [(f"  {f.name}", _short(f.median), _short(f.min), _short(f.max), str(len(f.runs)),
+              f.unit) for f in result.figures]
+    text = report.table(rows, left=(0, 5))
     if result.others_percent > MUCH:
-        used = f"{result.others_percent:.0f} % of a core"
-        lines.append(f"  other processes used {used} meanwhile: a quiet machine does better")
-    return "\n".join(lines)
+        text += (f"\n  other processes used {result.others_percent:.0f} % of a core meanwhile:"
+                 " a quiet machine does better")
+    return text
 
 
 def acceptance_table(verdicts: Sequence[Verdict]) -> str:
     """What was wanted, what was measured, whether that is enough, and if not, what binds."""
     rows = [("acceptance (median)", "wanted", "measured", "unit", "")]
-    rows += [
-        (
-            f"  {verdict.criterion.what}",
-            verdict.criterion.bound,
-            _short(verdict.figure.median),
-            verdict.figure.unit,
-            "met" if verdict.met else "MISSED",
-        )
-        for verdict in verdicts
-    ]
-    lines = _aligned(rows, left={0, 3, 4})
+    rows += [(f"  {verdict.criterion.what}", verdict.criterion.bound,
+              _short(verdict.figure.median), verdict.figure.unit,
+              "met" if verdict.met else "MISSED") for verdict in verdicts]
+    lines = [report.table(rows, left=(0, 3, 4))]
     for verdict in verdicts:
         if not verdict.met and verdict.binding:
             parts = ", ".join(f"{one.name.partition('/')[2]} {_short(one.median)} {one.unit}"
@@ -93,19 +87,36 @@ def acceptance_table(verdicts: Sequence[Verdict]) -> str:
     return "\n".join(lines)
 
 
+def write_chart(results: Results, path: Path) -> None:
+    """A bar for each criterion that was measured: beyond the line at 1 is good."""
+    verdicts = results.verdicts()[::-1]
+    sheet, axes = pyplot.subplots(figsize=(9.0, 1.5 + 0.25 * len(verdicts)), layout="constrained")
+    bars = axes.barh([verdict.criterion.what for verdict in verdicts], list(map(_score, verdicts)),
+                     color=[MET if verdict.met else MISSED for verdict in verdicts])
+    axes.bar_label(bars, [f"{verdict.figure.median:.3g} {verdict.figure.unit} "
+                          f"({verdict.criterion.bound})" for verdict in verdicts], fontsize=7)
+    axes.axvline(1.0, color="black", linewidth=1)
+    axes.set_xlim(0, 1.4 * MOST)
+    axes.set_xlabel("times as good as wanted")
+    axes.tick_params(labelsize=8)
+    kind = "quick pass, " if results.quick else ""
+    where = f"{results.machine.get('processor', '')}, {results.machine.get('cores', '?')} cores"
+    axes.set_title(f"{kind}{where}, {results.began[:10]}", fontsize=10)
+    sheet.savefig(path, dpi=110)
+    pyplot.close(sheet)
+
+
+def _score(verdict: Verdict) -> float:
+    value, criterion = verdict.figure.median, verdict.criterion
+    if criterion.at_least is not None:
+        return min(value / criterion.at_least, MOST)
+    if not criterion.at_most:
+        return 1.0 if verdict.met else 0.0
+    return min(criterion.at_most / value, MOST) if value > 0 else MOST
+
+
 def _short(value: float) -> str:
     """Four significant digits, without an exponent."""
     if value == 0 or abs(value) >= 1000:
         return f"{value:.0f}"
     return f"{value:.4g}" if abs(value) >= 0.001 else f"{value:.6f}"
-
-
-def _aligned(rows: Sequence[Sequence[str]], left: set[int]) -> list[str]:
-    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-    return [
-        "  ".join(
-            cell.ljust(width) if column in left else cell.rjust(width)
-            for column, (cell, width) in enumerate(zip(row, widths))
-        ).rstrip()
-        for row in rows
-    ]

@@ -1,116 +1,117 @@
-"""roscore on a port of its own, launch files and probes below it; nothing of it is left behind."""
+"""Programs over ROS, on a master of their own, and what is measured of them from outside."""
 
 from __future__ import annotations
 
-import os
-import signal
-import subprocess
+import re
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
-from run_session.failure import RunError
-from run_session.launch import describe_exit
-from run_session.master import free_port, is_up
-from run_session.processes import Child, Family
+import rospkg
+
+from run_session import simulator
+from run_session.launch import Launched
+from run_session.processes import Child, CpuMeter, Family
+from run_session.session import Session
 from sim_bench.figures import Figure, figure
 from sim_bench.settings import Settings
 
+START_LIMIT, END_LIMIT, LAP_LIMIT = 60.0, 10.0, 600.0  # s, wall
 POLL = 0.02  # s, wall
-MASTER_LIMIT, START_LIMIT, END_LIMIT = 20.0, 60.0, 10.0  # s, wall
-PROBES = "sim_bench.probes"
+QUICK_LAP = 15.0  # s, simulated
+SIMULATOR = "gazebo"  # its process's name
 PERCENT = "% of a core"
 LEAST_CPU = 0.5  # % of a core; who uses less is left out
+WAITING = "wait"  # for the picture before, while that is drawn: no work
+LEAST = 0.02  # of all work; what takes less is left out
+PROFILE = "profile:=true"
+_TABLE = re.compile(r"^stage +times .*$", re.MULTILINE)
+_ROW = re.compile(r"^(\S.*?) +(\d+) +([\d.]+) +[\d.]+ +[\d.]+%$")  # name, times, ms each, ...
 
 
-class RosRun:
-    """One ROS master's worth of programs. Services are called from here without a node."""
+class RosRun(Launched):
+    """roscore, launch files and probes."""
 
-    def __init__(self, family: Family, folder: Path):
-        self._family = family
-        self.folder = folder
-        self.folder.mkdir(parents=True, exist_ok=True)
-        self.port = free_port(0)
-        os.environ["ROS_MASTER_URI"] = self.master_uri = f"http://localhost:{self.port}"
-        self._environment = dict(
-            os.environ, ROS_LOG_DIR=str(folder / "ros"), PYTHONUNBUFFERED="1"
-        )
-        self._children: list[Child] = []
+    def launch(self, *arguments: str) -> Child:
+        """roslaunch with these arguments."""
+        name = f"roslaunch-{len(list(self.log_folder.glob('roslaunch-*')))}"
+        return self.start(name, ["roslaunch", "-p", str(self.port), *arguments])
 
-    def start_roscore(self) -> None:
-        """Returns when it is up."""
-        self.start("roscore", ["roscore", "-p", str(self.port)])
-        self.wait(lambda: is_up(self.master_uri), MASTER_LIMIT, "roscore")
+    def launch_world(self, *arguments: str) -> Child:
+        """empty_world.launch without a screen; returns when the simulator answers."""
+        launched = self.launch("gazebo_ros", "empty_world.launch", "gui:=false", *arguments)
+        self.wait(simulator.models, "the simulator")
+        return launched
 
-    def launch(self, package: str, file: str, *arguments: str) -> Child:
-        """roslaunch; it starts a master on our port if there is none."""
-        name = f"roslaunch-{len(self._children)}"
-        return self.start(name, ["roslaunch", "-p", str(self.port), package, file, *arguments])
+    def probe(self, kind: str, *arguments: str) -> Child:
+        """One of the nodes in `probes`, as a process of that name."""
+        return self.start(kind, probe_command(kind, *arguments))
 
-    def probe(self, name: str, *arguments: str) -> Child:
-        """One of the nodes in `probes`."""
-        return self.start(name, [sys.executable, "-P", "-m", f"{PROBES}.{name}", *arguments])
-
-    def start(self, name: str, command: list[str]) -> Child:
-        """Any program of this run; its output goes to NAME.log."""
-        log = self.folder / f"{name}.log"
-        try:
-            self._children.append(self._family.start(name, command, self._environment, log))
-        except OSError as error:
-            raise RunError(f"{command[0]} cannot be started: {error.strerror}") from error
-        return self._children[-1]
-
-    def end(self, child: Child) -> None:
-        """End one program as Ctrl-C would; it may take its time."""
-        self.forget(child)
-        child.process.send_signal(signal.SIGINT)
-        try:
-            child.process.wait(END_LIMIT)
-        except subprocess.TimeoutExpired as late:
-            output = child.last_lines()
-            raise RunError(f"{child.name} did not end within {END_LIMIT:.0f} s", output) from late
-
-    def forget(self, child: Child) -> None:
-        """That this program ends is no failure any more."""
-        self._children.remove(child)
-
-    def wait(self, condition: Callable[[], object], limit: float, what: str) -> object:
-        """What the condition gives once it is true; RunError after so many seconds."""
-        until = time.monotonic() + limit
-        while not (value := condition()):
-            self.check()
-            if time.monotonic() > until:
-                output = self._children[-1].last_lines() if self._children else ""
-                raise RunError(f"{what} was not there within {limit:.0f} s", output)
-            time.sleep(POLL)
-        return value
+    def wait(self, condition: object, what: str) -> object:
+        """What the condition gives once it is true; RunError if that takes too long."""
+        return self.wait_for(what, condition, START_LIMIT, pause=POLL)
 
     def pause(self, seconds: float) -> None:
         """Let it run for so long (s, wall), and notice if a part of it ends."""
         until = time.monotonic() + seconds
         while (left := until - time.monotonic()) > 0:
-            self.check()
+            self.check(None)
             time.sleep(min(left, 0.1))
 
-    def check(self) -> None:
-        """RunError if a program that was started here has ended."""
-        for child in self._children:
-            code = child.process.poll()
-            if code is not None:
-                ended = f"{child.name} ended ({describe_exit(code)}); log: {child.log}"
-                raise RunError(ended, child.last_lines())
+    def stop(self, *children: Child) -> None:
+        """End programs as Ctrl-C would; each may take its time."""
+        for child in children:
+            self.end(child, END_LIMIT)
+
+    def windows(self, count: int, length: float) -> list[Window]:
+        """So many windows of wall time (s), one after the other."""
+        meter, found = CpuMeter(), []
+        for _ in range(count):
+            start, simulated = time.monotonic(), simulator.simulated_time()
+            self.pause(length)
+            factor = (simulator.simulated_time() - simulated) / (time.monotonic() - start)
+            found.append(Window(start, time.monotonic(), factor, meter.look()))
+        return found
+
+
+@dataclass(frozen=True)
+class Window:
+    """What was measured between two moments on the wall (s)."""
+
+    start: float
+    end: float
+    factor: float  # simulated seconds in one on the wall
+    cpu: dict[str, float]  # each process's share of a core, %
 
 
 @contextmanager
-def ros_run(settings: Settings, name: str, roscore: bool = True) -> Iterator[RosRun]:
+def ros_run(settings: Settings, name: str) -> Iterator[RosRun]:
     """A run whose logs go to OUT/log/NAME; everything it started has ended when this is left."""
     with Family() as family:
-        run = RosRun(family, settings.out / "log" / name)
-        if roscore:
-            run.start_roscore()
+        run = RosRun(family, settings.out / "log" / name, vehicle="waffle")
+        run.start_roscore()
         yield run
+
+
+def marked_lap(settings: Settings, name: str, *options: str) -> dict:
+    """report.json of one lap of lesson 05 as `make course` runs it, film and scoring included.
+
+    Of 15 simulated seconds in a quick pass.
+    """
+    script = f"{rospkg.RosPack().get_path('evaluation')}/scripts/course_run.py"
+    folder = settings.out / "log" / name
+    short = ("--duration", str(QUICK_LAP)) if settings.quick else ()
+    command = [sys.executable, "-P", script, "--out", str(folder / "course"), *short, *options]
+    with Session(folder) as session:
+        return session.start_drive(command, folder / "course").report(LAP_LIMIT, "a lap")
+
+
+def probe_command(kind: str, *arguments: str) -> list[str]:
+    """What starts one of the nodes in `probes`."""
+    return [sys.executable, "-P", "-m", "sim_bench.probes", kind, *arguments, f"__name:={kind}"]
 
 
 def read_lines(path: Path) -> list[tuple[float, ...]]:
@@ -121,9 +122,45 @@ def read_lines(path: Path) -> list[tuple[float, ...]]:
     return [tuple(float(word) for word in line.split()) for line in whole.splitlines()]
 
 
-def cpu_figures(name: str, cpu: list[dict[str, float]], always: Sequence[str] = ()) -> list[Figure]:
-    """`NAME.cpu.PROCESS`; `cpu` has each process's share in each window, %."""
-    found = {process: [window.get(process, 0.0) for window in cpu]
-             for process in sorted({process for window in cpu for process in window})}
+def cpu_figures(name: str, windows: Sequence[Window], always: Sequence[str] = ()) -> list[Figure]:
+    """`NAME.cpu.PROCESS`."""
+    found = {process: [window.cpu.get(process, 0.0) for window in windows]
+             for process in sorted({process for window in windows for process in window.cpu})}
     return [figure(f"{name}.cpu.{process}", PERCENT, shares) for process, shares in found.items()
             if max(shares) >= LEAST_CPU or process in always]
+
+
+def stages(log: Path, turn: str) -> dict[str, float]:
+    """ms of wall time that each stage of the simulator's work takes in a turn.
+
+    From the tables that `profile:=true` prints, the first to the last, or the only one. A turn is
+    what the stage `turn` is done once in, a frame for example; empty where it was not done.
+    """
+    tables = _tables(log.read_text(encoding="utf-8", errors="replace"))
+    if not tables:
+        return {}
+    first, last = (tables[0] if len(tables) > 1 else {}), tables[-1]
+    spent = {stage: (times - first.get(stage, (0, 0.0))[0], ms - first.get(stage, (0, 0.0))[1])
+             for stage, (times, ms) in last.items()}
+    turns = spent.get(turn, (0, 0.0))[0]
+    return {stage: ms / turns for stage, (_, ms) in spent.items() if stage != WAITING and turns > 0}
+
+
+def stage_figures(name: str, work: dict[str, float]) -> list[Figure]:
+    """`NAME.stage.STAGE`, the greatest first, without those that make no difference."""
+    least = LEAST * sum(work.values())
+    return [figure(f"{name}.stage.{stage.replace(' ', '_')}", "ms", [ms])
+            for stage, ms in sorted(work.items(), key=lambda item: -item[1]) if ms > least]
+
+
+def _tables(text: str) -> list[dict[str, tuple[int, float]]]:
+    """Of each table, by stage: how often it was done, and ms of all together."""
+    tables = []
+    for head in _TABLE.finditer(text):
+        tables.append({})
+        for line in text[head.end():].lstrip("\n").splitlines():
+            row = _ROW.match(line)
+            if row is None:
+                break
+            tables[-1][row[1]] = (int(row[2]), int(row[2]) * float(row[3]))
+    return tables

@@ -9,15 +9,14 @@ from __future__ import annotations
 import math
 import time
 
-from bullet_sim.drives.diff_drive import DiffDrive
 from bullet_sim.model import Model
 from bullet_sim.pose import Pose
 from bullet_sim.sensors.laser import Laser
 from bullet_sim.sensors.odometry import true_odometry
 from bullet_sim.world import World
-from sim_bench.course import CourseWorld, drive_of, laser_of
+from sim_bench.course import CourseWorld, drive_of, sensor_with
 from sim_bench.figures import Figure, figure
-from sim_bench.settings import Settings
+from sim_bench.settings import Settings, say
 
 ROBOTS = 8
 RUNS = 5
@@ -29,7 +28,7 @@ SPACING = 1.0  # m
 
 def measure(settings: Settings) -> list[Figure]:
     """Wall milliseconds of a simulated second, and what stepping the engine takes of it."""
-    settings.say(f"{ROBOTS} robots")
+    say(f"{ROBOTS} robots")
     course = CourseWorld()
     robots = [_Robot(course.world, course.spawn_waffle(f"waffle{i}", Pose((x, y, 0.0))))
               for i, (x, y) in enumerate([(0.0, 0.0), *grid(ROBOTS - 1)])]
@@ -53,10 +52,8 @@ class _Robot:
 
     def __init__(self, world: World, model: Model):
         self._world, self._model = world, model
-        self._drive: DiffDrive = drive_of(model)
-        self._drive.command(SPEED, YAW_RATE)
-        link, sensor = laser_of(model)
-        self._laser = Laser(world, link, sensor)
+        self._drive = drive_of(model, SPEED, YAW_RATE)
+        self._laser = Laser(world, *sensor_with(model, "ray"))
 
     def update(self, sweep: bool) -> None:
         true_odometry(self._world, self._model)

@@ -8,79 +8,69 @@ and the picture as an array; no score. In two processes both count at once.
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
-import multiprocessing
-import os
 import time
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
-from bullet_sim.physics.engine import STDOUT
-from bullet_sim.world import World
 from run_session.failure import RunError
 from sim_bench.course import CourseWorld, drive_of
-from sim_bench.drawing_process import PLUGIN, TINY
+from sim_bench.drawing import PLUGIN, SAYS, TINY, PybulletDrawing
 from sim_bench.figures import Figure, figure, ratio
-from sim_bench.pybullet_drawing import PybulletDrawing
-from sim_bench.settings import Settings
+from sim_bench.own_process import OwnProcess
+from sim_bench.settings import Settings, say
 
 SIZES = ((84, 84), (320, 240))  # px
 COARSE = "coarse"
 RUNS, SECONDS = 5, 2.0  # turns; s of each
 SUB_STEPS, SUB_STEP = 10, 0.004  # of gym-line-follower, s
 SPEED, TURN = 0.15, 0.1  # m/s, rad/s
-LIMIT = 120.0  # s, wall, for one answer
-NEEDED = ("gymnasium", "driving_courses")
 
 
 def measure(settings: Settings) -> list[Figure]:
     """Environment steps a second, and how many times theirs ours are; RunError if it is absent."""
-    for module in NEEDED:
-        if importlib.util.find_spec(module) is None:
-            raise RunError(f"no module {module}: scripts/setup.sh --learning")
+    if importlib.util.find_spec("gymnasium") is None:
+        raise RunError("no module gymnasium: scripts/setup.sh --learning")
     found = []
-    for processes in (1, 2):
-        pools = {kind: ProcessPoolExecutor(processes, multiprocessing.get_context("spawn"))
-                 for kind in (COARSE, TINY, PLUGIN)}
-        try:
+    for count in (1, 2):
+        with contextlib.ExitStack() as stack:
+            contenders = {kind: stack.enter_context(OwnProcess(SAYS.get(kind, kind), count))
+                          for kind in (COARSE, TINY, PLUGIN)}
             for size in SIZES:
-                settings.say(f"environment steps at {size[0]}x{size[1]}, {processes} at once")
-                found += _rates(pools, size, processes, settings)
-        finally:
-            for pool in pools.values():
-                pool.shutdown(cancel_futures=True)
+                say(f"environment steps at {size[0]}x{size[1]}, {count} at once")
+                rates = _rates(contenders, size, settings)
+                found += _figures(rates, f"{size[0]}x{size[1]}.{count}")
     return found
 
 
-def _rates(pools: dict[str, ProcessPoolExecutor], size: tuple[int, int], processes: int,
-           settings: Settings) -> list[Figure]:
-    """Contenders take turns; one that cannot is left out, with a line."""
-    rates: dict[str, list[float]] = {kind: [] for kind in pools}
+def _rates(contenders: dict[str, OwnProcess], size: tuple[int, int],
+           settings: Settings) -> dict[str, list[float]]:
+    """Steps a second of contenders that take turns; one that cannot is left out, with a line."""
+    rates: dict[str, list[float]] = {kind: [] for kind in contenders}
     for run in range(settings.runs(RUNS) + 1):
         for kind in list(rates):
-            asked = [pools[kind].submit(_rate, kind, size, settings.seconds(SECONDS))
-                     for _ in range(processes)]
             try:
-                total = sum(each.result(LIMIT) for each in asked)
-            except (BrokenProcessPool, RunError, TimeoutError) as error:
-                settings.say(f"left out: {kind}: {error or 'no answer'}")
+                total = sum(contenders[kind].call(_rate, kind, size, settings.seconds(SECONDS)))
+            except RunError as error:
+                say(f"left out: {error}")
                 del rates[kind]
                 continue
             if run:  # the first is for opening things
                 rates[kind].append(total)
-    name = f"{size[0]}x{size[1]}.{processes}"
+    return rates
+
+
+def _figures(rates: dict[str, list[float]], name: str) -> list[Figure]:
     found = [figure(f"steps.{kind}.{name}", "1/s", values) for kind, values in rates.items()]
     return found + [ratio(f"ratio.{COARSE}.{kind}.{name}", rates[COARSE], rates[kind])
                     for kind in (TINY, PLUGIN) if kind in rates and COARSE in rates]
 
 
 def _rate(kind: str, size: tuple[int, int], seconds: float) -> float:
-    """In a process of the pool: steps a second over that time."""
+    """In a process of its own: steps a second over that time."""
     step = _open(kind, size)
     count, began = 0, time.perf_counter()
     while time.perf_counter() - began < seconds:
@@ -112,15 +102,9 @@ def _our_step(size: tuple[int, int]) -> Callable[[], object]:
 
 
 def _their_step(kind: str, size: tuple[int, int]) -> Callable[[], object]:
-    os.dup2(os.open(os.devnull, os.O_WRONLY), STDOUT)  # the plugin prints while it draws
-    course = CourseWorld()
-    described = course.world.description
-    course.world.close()
-    course.world = World(
-        replace(described, physics=replace(described.physics, max_step_size=SUB_STEP)))
+    course = CourseWorld(SUB_STEP)
     waffle = course.spawn_waffle()
-    drive = drive_of(waffle)
-    drive.command(SPEED, TURN)
+    drive = drive_of(waffle, SPEED, TURN)
     drawing = PybulletDrawing(course.world.update_scene(), plugin=kind == PLUGIN,
                               fastest=False)
 

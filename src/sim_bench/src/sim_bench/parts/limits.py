@@ -10,43 +10,34 @@ from __future__ import annotations
 import multiprocessing
 import socket
 import time
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 
 import numpy as np
 
 from bullet_sim.description import Material, Plane, Visual
-from bullet_sim.errors import SimulationError
 from bullet_sim.pose import Pose
 from bullet_sim.profiler import Profiler
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.rendering.scene import Scene
-from run_session.failure import RunError
 from sim_bench.figures import Figure, figure
-from sim_bench.settings import Settings
+from sim_bench.own_process import LIMIT, OwnProcess
+from sim_bench.settings import Settings, say
 
 SIZES = ((640, 480), (1920, 1080))  # px
 DEPTH_FRAME = 1920 * 1080 * (3 + 4 + 16)  # bytes of colour, depth and points
 RUNS, PICTURES = 5, 10
-LIMIT = 120.0  # s, wall, for an answer
 
 
 def measure(settings: Settings) -> list[Figure]:
     """Milliseconds on the wall; `_cpu`: of processor time, of all threads together."""
-    settings.say("a picture of one colour")
-    runs, spawn = settings.runs(RUNS), multiprocessing.get_context("spawn")
-    try:
-        with ProcessPoolExecutor(1, spawn) as drawing:
-            times = {size: drawing.submit(_flat_pictures, size, runs).result(LIMIT)
-                     for size in SIZES}
-    except (BrokenProcessPool, SimulationError, TimeoutError) as error:
-        raise RunError(f"pictures of one colour: {error or 'they take too long'}") from error
-    found = []
-    for (width, height), (wall, cpu) in times.items():
-        found += [figure(f"flat_picture.{width}x{height}", "ms", wall),
-                  figure(f"flat_picture_cpu.{width}x{height}", "ms", cpu)]
-    settings.say(f"{DEPTH_FRAME / 1e6:.0f} MB in memory, and from process to process")
+    say("a picture of one colour")
+    runs, found = settings.runs(RUNS), []
+    with OwnProcess("pictures of one colour") as drawing:
+        for width, height in SIZES:
+            ((wall, cpu),) = drawing.call(_flat_pictures, (width, height), runs)
+            found += [figure(f"flat_picture.{width}x{height}", "ms", wall),
+                      figure(f"flat_picture_cpu.{width}x{height}", "ms", cpu)]
+    say(f"{DEPTH_FRAME / 1e6:.0f} MB in memory, and from process to process")
     return [*found, figure("depth_frame.copy", "ms", _copies(runs)),
             figure("depth_frame.loopback", "ms", _loopback(runs))]
 

@@ -15,18 +15,12 @@ from collections.abc import Sequence
 
 from run_session import simulator
 from run_session.processes import memory
-from sim_bench.course_drive import (
-    SIMULATOR,
-    Follower,
-    camera_arguments,
-    fast_arguments,
-    launch_course,
-)
 from sim_bench.figures import Figure, figure
-from sim_bench.parts.fast import SIZE, send_circle
-from sim_bench.ros_run import RosRun, read_lines, ros_run
-from sim_bench.settings import Settings
+from sim_bench.follower import FAST, LOCKSTEP, Follower, launch_course, send_circle
+from sim_bench.ros_run import SIMULATOR, RosRun, read_lines, ros_run
+from sim_bench.settings import Settings, say
 
+SIZE = (640, 480)  # px
 LOOKS = 200  # at the memory, over a leg
 CAMERA_SHARE = 0.25  # of MEMORY_S, for the leg with the camera
 CLOCK_PERIOD_NS = 10_000_000  # 100 Hz of simulated time, the launch file's default
@@ -39,10 +33,10 @@ def measure(settings: Settings) -> list[Figure]:
     """Percent of growth, megabytes, and nanoseconds that /clock is off."""
     length = settings.seconds(settings.memory_s)
     with ros_run(settings, "memory") as run:
-        settings.say(f"{length:g} simulated s without a camera")
-        plain, drift = _without_camera(run, length, settings)
-        settings.say(f"{CAMERA_SHARE * length:g} simulated s with a camera in lockstep")
-        camera = _with_camera(run, CAMERA_SHARE * length, settings)
+        say(f"{length:g} simulated s without a camera")
+        plain, drift = _without_camera(run, length)
+        say(f"{CAMERA_SHARE * length:g} simulated s with a camera in lockstep")
+        camera = _with_camera(run, CAMERA_SHARE * length)
     return [*_figures("no_camera", plain), *_figures("camera", camera), *drift]
 
 
@@ -56,40 +50,33 @@ def growth_percent(samples: Sequence[tuple[float, int]]) -> float:
     return 100.0 * (late - early) / early
 
 
-def _without_camera(
-    run: RosRun, length: float, settings: Settings
-) -> tuple[Samples, list[Figure]]:
-    launched = launch_course(run, *fast_arguments(lockstep=False))
-    file = run.folder / "clock.txt"
-    file.unlink(missing_ok=True)
+def _without_camera(run: RosRun, length: float) -> tuple[Samples, list[Figure]]:
+    launched = launch_course(run, *FAST)
+    file = run.log_folder / "clock.txt"
     probe = run.probe("clock", str(file), str(CLOCK_PERIOD_NS))
     circle = send_circle(run)
     simulator.unpause()
-    samples = _sample(run, length, settings)
+    samples = _sample(run, length)
     simulator.pause()
     run.pause(CLOCK_WAIT)
     ((_, last_ns, off_ns),) = read_lines(file)
     behind = simulator.simulated_time() - last_ns * 1e-9
-    for child in (circle, probe, launched):
-        run.end(child)
+    run.stop(circle, probe, launched)
     return samples, [
         figure("clock.off_whole_periods", "ns", [off_ns]),
         figure("clock.behind_ticks", "ms", [1e3 * behind]),
     ]
 
 
-def _with_camera(run: RosRun, length: float, settings: Settings) -> Samples:
-    launched = launch_course(run, *camera_arguments(*SIZE), *fast_arguments(lockstep=True))
-    follower = Follower(run, SIZE[0])
-    follower.wait_until_listening()
-    simulator.unpause()
-    samples = _sample(run, length, settings)
-    run.end(follower.child)
-    run.end(launched)
+def _with_camera(run: RosRun, length: float) -> Samples:
+    follower = Follower(run, SIZE, *LOCKSTEP)
+    follower.unpause()
+    samples = _sample(run, length)
+    follower.end()
     return samples
 
 
-def _sample(run: RosRun, length: float, settings: Settings) -> Samples:
+def _sample(run: RosRun, length: float) -> Samples:
     """The simulator's memory at even steps of simulated time, until so much has passed."""
     begin = simulator.simulated_time()
     samples, reported_at = [], time.monotonic()
@@ -98,7 +85,7 @@ def _sample(run: RosRun, length: float, settings: Settings) -> Samples:
             samples.append((passed, memory(SIMULATOR)))
         if time.monotonic() - reported_at > SAY_PERIOD:
             reported_at = time.monotonic()
-            settings.say(f"  {passed:.0f} of {length:.0f} simulated s")
+            say(f"  {passed:.0f} of {length:.0f} simulated s")
         run.pause(0.1)
     return samples
 

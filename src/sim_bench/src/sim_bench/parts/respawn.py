@@ -7,19 +7,15 @@ drives, for the time of a step.
 from __future__ import annotations
 
 import time
-from pathlib import Path
 
-import rospkg
-
-from bullet_sim.formats.xacro.files import expand
 from bullet_sim.pose import Pose
 from run_session import simulator
 from run_session.processes import memory
-from sim_bench.course import CourseWorld, drive_of
+from sim_bench.course import CourseWorld, drive_of, waffle_text
 from sim_bench.figures import Figure, figure, ratio
-from sim_bench.parts.memory import SIMULATOR, growth_percent
-from sim_bench.ros_run import START_LIMIT, ros_run
-from sim_bench.settings import Settings
+from sim_bench.parts.memory import growth_percent
+from sim_bench.ros_run import SIMULATOR, ros_run
+from sim_bench.settings import Settings, say
 
 TIMES, QUICK_TIMES = 1000, 200
 LOOKS = 50  # measurements on the way
@@ -31,20 +27,14 @@ ASIDE = Pose((1.0, 1.0, 0.01))
 def measure(settings: Settings) -> list[Figure]:
     """Percent of growth, and the time of a step at the end beside that at the beginning."""
     times = QUICK_TIMES if settings.quick else TIMES
-    return [*_memory(settings, times), *_step_time(settings, times)]
+    return [*_memory(settings, times), *_step_time(times)]
 
 
 def _memory(settings: Settings, times: int) -> list[Figure]:
-    packages = rospkg.RosPack()
-    folder = Path(packages.get_path("turtlebot3_description"))
-    text = expand(
-        folder / "urdf" / "turtlebot3_waffle.urdf.xacro", find_package=packages.get_path
-    )
-    samples, took = [], []
+    text, samples, took = waffle_text(), [], []
     with ros_run(settings, "respawn") as run:
-        run.launch("gazebo_ros", "empty_world.launch", "gui:=false")
-        run.wait(simulator.models, START_LIMIT, "the simulator")
-        settings.say(f"{times} waffles, one after the other")
+        run.launch_world()
+        say(f"{times} waffles, one after the other")
         for number in range(times):
             began = time.monotonic()
             simulator.spawn_urdf("waffle", text, "", 0.0, 0.0)
@@ -52,18 +42,17 @@ def _memory(settings: Settings, times: int) -> list[Figure]:
             took.append(1e3 * (time.monotonic() - began))
             if number % (times // LOOKS) == 0:
                 samples.append((float(number), memory(SIMULATOR)))
-                run.pause(0.01)  # notices a part that died
+                run.check(None)
     return [
         figure("memory.growth", "%", [growth_percent(samples)]),
         figure("spawn_and_delete", "ms", took),
     ]
 
 
-def _step_time(settings: Settings, times: int) -> list[Figure]:
-    settings.say(f"{times} more, beside one that drives")
+def _step_time(times: int) -> list[Figure]:
+    say(f"{times} more, beside one that drives")
     course = CourseWorld()
-    drive = drive_of(course.spawn_waffle())
-    drive.command(SPEED, YAW_RATE)
+    drive = drive_of(course.spawn_waffle(), SPEED, YAW_RATE)
     seconds = []
     for number in range(times):
         course.spawn_waffle("other", ASIDE)

@@ -11,12 +11,12 @@ from pathlib import Path
 
 import rospkg
 
-from bullet_sim.formats.xacro.files import expand
 from run_session import simulator
+from sim_bench.course import waffle_text
 from sim_bench.figures import Figure, figure
 from sim_bench.parts.growth import grid
-from sim_bench.ros_run import START_LIMIT, RosRun, ros_run
-from sim_bench.settings import Settings
+from sim_bench.ros_run import RosRun, ros_run
+from sim_bench.settings import Settings, say
 
 COUNT, RUNS = 10, 3
 SPACING = 0.6  # m
@@ -25,14 +25,11 @@ NAMES = tuple(f"tb{number}" for number in range(1, COUNT + 1))
 
 def measure(settings: Settings) -> list[Figure]:
     """Seconds on the wall."""
-    packages = rospkg.RosPack()
-    world = Path(packages.get_path("learning_topic")) / "worlds" / "course.world"
-    waffle = Path(packages.get_path("turtlebot3_description"), "urdf/turtlebot3_waffle.urdf.xacro")
-    text = expand(waffle, find_package=packages.get_path)
+    world = Path(rospkg.RosPack().get_path("learning_topic")) / "worlds" / "course.world"
+    text = waffle_text()
     with ros_run(settings, "robots") as run:
-        run.launch("gazebo_ros", "empty_world.launch", "gui:=false", f"world_name:={world}")
-        run.wait(simulator.models, START_LIMIT, "the simulator")
-        settings.say(f"{COUNT} waffles by services, then by a launch file")
+        run.launch_world(f"world_name:={world}")
+        say(f"{COUNT} waffles by services, then by a launch file")
         runs = range(settings.runs(RUNS))
         return [figure("spawned", "s", [_by_services(text) for _ in runs]),
                 figure("launched.spawned", "s", [_by_launch_file(run) for _ in runs])]
@@ -63,14 +60,13 @@ def _by_services(text: str) -> float:
 
 
 def _by_launch_file(run: RosRun) -> float:
-    file = run.folder / "ten_waffles.launch"
+    file = run.log_folder / "ten_waffles.launch"
     file.write_text(launch_file_text(), encoding="utf-8")
     began = time.monotonic()
-    launched = run.start("ten_waffles", ["roslaunch", "-p", str(run.port), str(file)])
-    run.forget(launched)  # it ends by itself: all its nodes do
-    run.wait(lambda: set(NAMES) <= set(simulator.models()), START_LIMIT, "ten waffles")
+    launched = run.launch(str(file))
+    run.wait(lambda: set(NAMES) <= set(simulator.models()), "ten waffles")
     took = time.monotonic() - began
-    run.wait(lambda: launched.process.poll() is not None, START_LIMIT, "its end")
+    run.stop(launched)
     _take_out()
     return took
 

@@ -71,8 +71,7 @@ def _open() -> tuple[CourseWorld, Model, Callable[[], None]]:
 
 
 def _drive_a_circle(course: CourseWorld, waffle: Model) -> None:
-    drive = drive_of(waffle)
-    drive.command(SPEED, YAW_RATE)
+    drive = drive_of(waffle, SPEED, YAW_RATE)
     for _ in range(60):  # until its speed is reached
         drive.update(DRIVE_PERIOD)
         course.world.step(DRIVE_STEPS)

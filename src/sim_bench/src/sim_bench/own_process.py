@@ -1,0 +1,59 @@
+"""Calls in processes of their own: OpenGL contexts stay apart, and a crash ends no benchmark."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from typing import TypeVar
+
+from bullet_sim.errors import SimulationError
+from bullet_sim.physics.engine import STDOUT
+from run_session.failure import RunError
+
+LIMIT = 120  # s, wall, for one call
+T = TypeVar("T")
+
+
+class OwnProcess:
+    """`count` processes that do the same at once; a context manager."""
+
+    def __init__(self, what: str, count: int = 1):
+        """`what`: its name in an error."""
+        self._what, self._count = what, count
+        self._pool = ProcessPoolExecutor(
+            count, multiprocessing.get_context("spawn"), initializer=_prepare)
+
+    def __enter__(self) -> OwnProcess:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._pool.shutdown(cancel_futures=True)
+
+    def call(self, function: Callable[..., T], *arguments: object) -> list[T]:
+        """What each process returns; RunError where one fails, dies or takes too long."""
+        asked = [self._pool.submit(_within_limit, function, arguments)
+                 for _ in range(self._count)]
+        try:
+            return [each.result() for each in asked]
+        except BrokenProcessPool:
+            why = f"it died, or took more than {LIMIT} s"
+        except (SimulationError, RunError, OSError) as error:
+            why = " ".join(str(error).split())
+        raise RunError(f"{self._what}: {why}")
+
+
+def _prepare() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C: just end
+    os.dup2(os.open(os.devnull, os.O_WRONLY), STDOUT)  # PyBullet's plugin prints while it draws
+
+
+def _within_limit(function: Callable[..., T], arguments: tuple) -> T:
+    signal.alarm(LIMIT)  # ends the process, even one that hangs in a driver
+    try:
+        return function(*arguments)
+    finally:
+        signal.alarm(0)
