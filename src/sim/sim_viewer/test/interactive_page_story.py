@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Interactive markers in a browser: the mouse drags and clicks them, and their server hears it."""
 
+import functools
 import json
 import math
 import sys
@@ -21,7 +22,6 @@ from visualization_msgs.msg import InteractiveMarkerControl as Mode
 
 from bullet_sim.pose import Pose, multiply
 
-BROWSERS = {"chromium": chromium, "firefox": firefox}
 TOLERANCE = 0.05  # m, of a click: a pixel or two
 PRECISE = 0.01  # m or rad, of a drag by so many pixels
 BASE_LINK = Pose.from_xyz_rpy((1.0, 0.5, 0.0), (0.0, 0.0, math.pi / 2))  # in map
@@ -40,17 +40,25 @@ PROJECT = """((x, y, z) => {
 })"""
 
 
+@functools.cache
+def marker_server():
+    """One for both browsers: it cannot be ended."""
+    return InteractiveMarkerServer("handles")
+
+
 class InteractivePage(unittest.TestCase):
+    Browser = chromium.Browser
+
     @classmethod
     def setUpClass(cls):
         cls.tf = rospy.Publisher("/tf_static", TFMessage, queue_size=1, latch=True)
         cls.tf.publish(TFMessage(made_up.transforms()))
         cls.heard = []
-        cls.server = InteractiveMarkerServer("handles")
+        cls.server = marker_server()
         for marker in [*scene(), ball(Mode.MOVE_3D)]:
             cls.server.insert(marker, cls.take)
         cls.server.applyChanges()
-        cls.browser = BROWSERS[rospy.get_param("~browser", "chromium")].Browser()
+        cls.browser = cls.Browser()
         cls.addClassCleanup(cls.browser.close)
         cls.page = cls.open("/sim_viewer/url")
 
@@ -303,6 +311,10 @@ class InteractivePage(unittest.TestCase):
         self.assertEqual(page.errors, [])
 
 
+class InteractivePageInFirefox(InteractivePage):
+    Browser = firefox.Browser
+
+
 if __name__ == "__main__":
     rospy.init_node("interactive_page_story")
-    rostest.rosrun("sim_viewer", "interactive_page", InteractivePage, sys.argv)
+    rostest.rosrun("sim_viewer", "interactive_page", "__main__", sys.argv)

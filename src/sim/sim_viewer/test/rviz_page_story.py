@@ -24,11 +24,12 @@ TOPICS = {"/tf_static": lambda: TFMessage([*made_up.transforms(), made_up.eye()]
           "/odom": made_up.odometry, "/marker": made_up.marker,
           "/lost_scan": lambda: made_up.scan("nowhere"), "/picture": made_up.picture,
           "/eye/image_raw": made_up.view_from_above, "/eye/camera_info": made_up.camera_info}
-BROWSERS = {"chromium": chromium, "firefox": firefox}
 TOLERANCE = 0.1  # m, of a click: some pixels
 
 
 class RvizPage(unittest.TestCase):
+    Browser = chromium.Browser
+
     @classmethod
     def setUpClass(cls):
         rospy.set_param("/robot_description", made_up.URDF)
@@ -37,6 +38,7 @@ class RvizPage(unittest.TestCase):
             message = make()
             cls.publishers[topic] = rospy.Publisher(topic, type(message), queue_size=1, latch=True)
             cls.publishers[topic].publish(message)
+            cls.addClassCleanup(cls.publishers[topic].unregister)
         cls.heard = {}
         for topic, kind in (("/move_base_simple/goal", PoseStamped),
                             ("/clicked_point", PointStamped),
@@ -44,7 +46,7 @@ class RvizPage(unittest.TestCase):
             rospy.Subscriber(topic, kind, lambda message, topic=topic: cls.heard.update(
                 {topic: message}))
         cls.url = wait_until(lambda: rospy.get_param("/sim_viewer/url", ""), "the page's address")
-        cls.browser = BROWSERS[rospy.get_param("~browser", "chromium")].Browser()
+        cls.browser = cls.Browser()
         cls.addClassCleanup(cls.browser.close)
         cls.page = cls.browser.open(cls.url + "#rviz")
         cls.page.wait_for("!!window.rviz")
@@ -152,6 +154,7 @@ class RvizPage(unittest.TestCase):
 
     def test_3_a_map_is_updated(self):
         updates = rospy.Publisher("/map_updates", type(made_up.update()), queue_size=1, latch=True)
+        self.addCleanup(updates.unregister)
         updates.publish(made_up.update())
         self.wait("Map", "parts[0].children[0].material.uniforms.cells.value.image"
                          ".data[20 * 80 + 10] === 50")
@@ -214,6 +217,10 @@ class RvizPage(unittest.TestCase):
         poses.until(lambda event: event.get("names") == ["box::base_link"], "the robot's link")
 
 
+class RvizPageInFirefox(RvizPage):
+    Browser = firefox.Browser
+
+
 if __name__ == "__main__":
     rospy.init_node("rviz_page_story")
-    rostest.rosrun("sim_viewer", "rviz_page", RvizPage, sys.argv)
+    rostest.rosrun("sim_viewer", "rviz_page", "__main__", sys.argv)
