@@ -1,14 +1,11 @@
-#!/usr/bin/env python3
 """draw_square resets the pond and closes its square."""
 
 import math
 import re
-import sys
 import unittest
 
 import rospy
-import rostest
-from pond_watch import LogLines, Topic, rosrun, wait_until
+from pond_watch import LogLines, Topic, start_node, wait_until
 from turtlesim.msg import Pose
 from turtlesim.srv import TeleportAbsolute
 
@@ -22,7 +19,7 @@ class DrawSquareStory(unittest.TestCase):
         log, pose = LogLines(), Topic("/turtle1/pose", Pose)
         rospy.wait_for_service("/turtle1/teleport_absolute", 60.0)
         rospy.ServiceProxy("/turtle1/teleport_absolute", TeleportAbsolute)(1, 1, 1)
-        node = rosrun("turtlesim", "draw_square")
+        node = start_node("draw_square")
         self.addCleanup(node.wait)
         self.addCleanup(node.terminate)
         log.wait_for_line("Resetting turtlesim.")
@@ -42,8 +39,3 @@ class DrawSquareStory(unittest.TestCase):
         self.assertTrue(any(line.msg == "Reached goal" for line in log.messages))
         self.assertEqual(max(p.linear_velocity for p in pose.messages), 1.0)
         self.assertAlmostEqual(max(p.angular_velocity for p in pose.messages), 0.4, places=6)
-
-
-if __name__ == "__main__":
-    rospy.init_node("draw_square_story")
-    rostest.rosrun("turtlesim", "draw_square_story", DrawSquareStory, sys.argv)

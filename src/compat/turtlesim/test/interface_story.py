@@ -9,6 +9,7 @@ import numpy as np
 import rosgraph
 import rospy
 import rostest
+from draw_square_story import DrawSquareStory  # noqa: F401, rostest finds it by this module's name
 from geometry_msgs.msg import Twist
 from pond_watch import LIMIT, LogLines, Topic, service_names, wait_until
 from sensor_msgs.msg import Image
@@ -222,4 +223,4 @@ class InterfaceStory(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("interface_story")
-    rostest.rosrun("turtlesim", "interface_story", InterfaceStory, sys.argv)
+    rostest.rosrun("turtlesim", "interface_story", "__main__", sys.argv)

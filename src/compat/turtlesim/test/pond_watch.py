@@ -8,6 +8,7 @@ import xmlrpc.client
 import rosgraph
 import rospy
 from rosgraph_msgs.msg import Log
+from roslib.packages import find_node
 
 LIMIT = 60.0  # s, for whatever is waited for
 
@@ -21,9 +22,10 @@ def wait_until(condition, what, limit=LIMIT):
     return found
 
 
-def rosrun(*words, **options):
-    """The node in a session of its own."""
-    return subprocess.Popen(["rosrun", *words], start_new_session=True, **options)
+def start_node(program, *arguments, **options):
+    """One of turtlesim's nodes in a session of its own."""
+    return subprocess.Popen([*find_node("turtlesim", program)[:1], *arguments],
+                            start_new_session=True, **options)
 
 
 def service_names():

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """turtle_teleop_key, typed at through a pseudo-terminal."""
 
 import fcntl
@@ -6,16 +5,14 @@ import os
 import pty
 import signal
 import subprocess
-import sys
 import termios
 import threading
 import time
 import unittest
 
 import rospy
-import rostest
 from geometry_msgs.msg import Twist
-from pond_watch import LIMIT, Topic, rosrun, sends_to_us, wait_until
+from pond_watch import LIMIT, Topic, sends_to_us, start_node, wait_until
 
 UP, DOWN, RIGHT, LEFT = (f"\x1b[{letter}" for letter in "ABCD")
 TEXT = (
@@ -40,9 +37,9 @@ class TeleopStory(unittest.TestCase):
         self.addCleanup(self.sent.subscriber.unregister)
         self.keyboard, self.terminal = pty.openpty()
         self.before, self.shown = termios.tcgetattr(self.terminal), ""
-        self.node = rosrun("turtlesim", "turtle_teleop_key", *arguments, stdin=self.terminal,
-                           stdout=self.terminal, stderr=subprocess.STDOUT,
-                           preexec_fn=take_terminal)
+        self.node = start_node("turtle_teleop_key", *arguments, stdin=self.terminal,
+                               stdout=self.terminal, stderr=subprocess.STDOUT,
+                               preexec_fn=take_terminal)
         self.addCleanup(self.end)
         threading.Thread(target=self.read, daemon=True).start()
         wait_until(lambda: self.sent.subscriber.get_num_connections(), "the node's publisher")
@@ -132,8 +129,3 @@ class TeleopStory(unittest.TestCase):
         self.addCleanup(os.close, keyboard)
         self.addCleanup(os.close, terminal)
         self.assert_one_line("/scale_linear must be a number, not 'fast'", stdin=terminal)
-
-
-if __name__ == "__main__":
-    rospy.init_node("teleop_story")
-    rostest.rosrun("turtlesim", "teleop_story", TeleopStory, sys.argv)

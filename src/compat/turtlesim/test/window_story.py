@@ -1,17 +1,14 @@
-#!/usr/bin/env python3
 """The window under Xvfb: its title, size and pixels, and what ends it."""
 
 import os
 import signal
 import subprocess
-import sys
 import unittest
 
 import numpy as np
 import rosgraph
 import rospy
-import rostest
-from pond_watch import LIMIT, rosrun, service_names, wait_until
+from pond_watch import LIMIT, service_names, start_node, wait_until
 from std_srvs.srv import Empty
 from turtlesim.srv import SetPen, TeleportAbsolute
 
@@ -55,7 +52,7 @@ class WindowStory(unittest.TestCase):
         cls.screen.wait()
 
     def setUp(self):
-        self.node = rosrun("turtlesim", "turtlesim_node", stderr=subprocess.PIPE, text=True)
+        self.node = start_node("turtlesim_node", stderr=subprocess.PIPE, text=True)
         self.addCleanup(self.end)
         self.window = wait_until(lambda: xdotool("search", "--name", "^TurtleSim$"), "a window")
         wait_until(lambda: "/kill" in service_names(), "the node's services")
@@ -96,8 +93,3 @@ class WindowStory(unittest.TestCase):
         os.killpg(self.node.pid, signal.SIGINT)
         self.assertEqual(self.node.wait(LIMIT), 0)
         self.assertEqual(self.node.stderr.read(), "")
-
-
-if __name__ == "__main__":
-    rospy.init_node("window_story")
-    rostest.rosrun("turtlesim", "window_story", WindowStory, sys.argv)
