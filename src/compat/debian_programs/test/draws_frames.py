@@ -1,13 +1,10 @@
-#!/usr/bin/env python3
 """view_frames as pages type it, and the other programs of tf beside it."""
 
 import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-import rostest
 from roslib.packages import find_node
 
 LIMIT = 60.0  # s
@@ -39,7 +36,3 @@ class DrawsFrames(unittest.TestCase):
         done = subprocess.run(["rosrun", "tf", "tf_echo"], capture_output=True, text=True,
                               timeout=LIMIT, check=False)
         self.assertIn("tf_echo source_frame target_frame", done.stdout)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("debian_programs", "draws_frames", DrawsFrames, sys.argv)

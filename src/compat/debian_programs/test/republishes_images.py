@@ -1,15 +1,13 @@
-#!/usr/bin/env python3
 """republish as the wiki types it: what comes out is what went in."""
 
 import subprocess
-import sys
 import threading
 import unittest
 
 import numpy as np
 import rospy
-import rostest
 from cv_bridge import CvBridge
+from roslib.packages import find_node
 from sensor_msgs.msg import CompressedImage, Image
 
 LIMIT = 60.0  # s
@@ -27,7 +25,7 @@ def kind(transport):
 class Republish(unittest.TestCase):
     def start(self, source, target, incoming, outgoing):
         words = [word for word in (source, f"in:={incoming}", target, f"out:={outgoing}") if word]
-        program = subprocess.Popen(["rosrun", "image_transport", "republish", *words])
+        program = subprocess.Popen([find_node("image_transport", "republish")[0], *words])
         self.addCleanup(program.wait)
         self.addCleanup(program.terminate)
 
@@ -103,8 +101,3 @@ class Republish(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (1, ""))
         self.assertRegex(done.stderr, "^republish: there is no transport 'compresed' here; there "
                          "are .*compressed, .*raw.*\n$")
-
-
-if __name__ == "__main__":
-    rospy.init_node("republishes_images")
-    rostest.rosrun("debian_programs", "republishes_images", Republish, sys.argv)

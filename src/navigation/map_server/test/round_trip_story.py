@@ -18,6 +18,7 @@ from nav_msgs.msg import MapMetaData
 from nav_msgs.msg import OccupancyGrid as Map
 from nav_msgs.srv import GetMap, LoadMap
 from rosgraph_msgs.msg import Clock
+from roslib.packages import find_node
 
 from map_server.map_files import read_map, write_map
 from nav_algorithms.grid import OccupancyGrid
@@ -47,9 +48,9 @@ class RoundTrip(unittest.TestCase):
         write_map(self.folder / "one", OccupancyGrid(CELLS, 0.025, (-1 / 3, 2.0)), yaw=0.5)
         self.running.set()
 
-    def start(self, *command):
-        process = subprocess.Popen(["rosrun", "map_server", *map(str, command)], text=True,
-                                   cwd=self.folder, start_new_session=True,
+    def start(self, program, *arguments):
+        command = [find_node("map_server", program)[0], *map(str, arguments)]
+        process = subprocess.Popen(command, text=True, cwd=self.folder, start_new_session=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         self.addCleanup(self.end, process)
         return process
