@@ -11,6 +11,7 @@ import unittest
 import rospy
 import rostest
 from rosgraph_msgs.msg import Log
+from roslib.packages import find_node
 from stand_in_camera import LIMIT, WIDTH, StandInCamera, stands, wait_until
 
 TIMES = 4
@@ -19,9 +20,9 @@ PERIOD = 1 / 30  # s from image to image
 
 @contextlib.contextmanager
 def running(script):
-    """`rosrun learning_topic SCRIPT`; killed if it still runs afterwards."""
+    """A lesson; killed if it still runs afterwards."""
     process = subprocess.Popen(
-        ["rosrun", "learning_topic", script], stderr=subprocess.PIPE, text=True
+        find_node("learning_topic", script)[:1], stderr=subprocess.PIPE, text=True
     )
     try:
         yield process

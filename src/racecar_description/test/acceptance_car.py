@@ -32,7 +32,7 @@ def wait_until(condition, what):
     while time.monotonic() < end and not rospy.is_shutdown():
         if answer := condition():
             return answer
-        time.sleep(0.005)
+        time.sleep(0.02)
     raise AssertionError(f"not within {LIMIT:.0f} s: {what}")
 
 

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""The car by bringup's launch file, and its controllers: step responses, life, emergency stop."""
+"""The car by bringup's launch file: its sensors, its controllers' life, steps, emergency stop."""
 
 import sys
 import unittest
 
 import rostest
-from acceptance_bringup import Bringup
 from acceptance_car import init_node
 from acceptance_emergency import Emergency
 from acceptance_life import Life
 from acceptance_steps import Steps
+from racecar_contract import Racecar
 
 
 class Suite(unittest.TestSuite):
@@ -17,7 +17,7 @@ class Suite(unittest.TestSuite):
 
     def __init__(self):
         load = unittest.defaultTestLoader.loadTestsFromTestCase
-        super().__init__([load(Bringup), load(Steps), load(Life), load(Emergency)])
+        super().__init__([load(Racecar), load(Steps), load(Life), load(Emergency)])
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ import unittest
 
 import rospy
 from acceptance_car import CONTROLLERS, WHEELS, call, controller_states
-from acceptance_tools import Spawner, manager, run, spawn_all
+from acceptance_tools import Spawner, manager, run, slow_down, spawn_all
 from controller_manager_msgs.srv import (
     LoadController,
     SwitchController,
@@ -36,6 +36,7 @@ class Life(unittest.TestCase):
     def setUpClass(cls):
         cls.spawner = spawn_all()
         cls.addClassCleanup(cls.spawner.end)
+        cls.addClassCleanup(slow_down(0.2))  # the processor is for the tools
 
     def setUp(self):
         self.assertEqual(set(controller_states().values()), {"running"})

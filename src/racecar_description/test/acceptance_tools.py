@@ -5,7 +5,8 @@ import signal
 import subprocess
 import tempfile
 
-from acceptance_car import CONTROLLERS, LIMIT, all_running, wait_until
+from acceptance_car import CONTROLLERS, LIMIT, all_running, call, wait_until
+from gazebo_msgs.srv import GetPhysicsProperties, SetPhysicsProperties
 from roslib.packages import find_node
 
 
@@ -29,6 +30,18 @@ def manager(*words):
     assert code == 0, (code, said, reason)
     assert "Traceback" not in reason, reason
     return said
+
+
+def slow_down(share):
+    """Let simulated time pass at this share of its rate; returns what ends that."""
+    physics = call("/gazebo/get_physics_properties", GetPhysicsProperties)
+
+    def set_rate(rate_hz):
+        call("/gazebo/set_physics_properties", SetPhysicsProperties, time_step=physics.time_step,
+             max_update_rate=rate_hz, gravity=physics.gravity, ode_config=physics.ode_config)
+
+    set_rate(share * physics.max_update_rate)
+    return lambda: set_rate(physics.max_update_rate)
 
 
 class Spawner:
