@@ -11,6 +11,7 @@ import unittest
 
 import rospy
 import rostest
+from roslib.packages import find_node
 
 START_LIMIT = 60.0  # s, wall
 END_LIMIT = 3.0  # s, wall; what a person waits after Ctrl-C
@@ -26,7 +27,7 @@ class Ending(unittest.TestCase):
         self.log = os.path.join(self.folder, "log.txt")
         with open(self.log, "wb") as log:
             process = subprocess.Popen(
-                ["rosrun", "gazebo_ros", "gzserver", *arguments, "__name:=ending_gazebo"],
+                [find_node("gazebo_ros", "gzserver")[0], *arguments, "__name:=ending_gazebo"],
                 stdout=log, stderr=subprocess.STDOUT, env=os.environ | environment)
         self.addCleanup(process.kill)
         return process

@@ -7,6 +7,7 @@ import tempfile
 import time
 
 import rospy
+from roslib.packages import find_node
 
 LIMIT = 60.0  # s, wall, for anything that a test waits for
 NODE = "/gazebo"
@@ -19,7 +20,7 @@ def wait_until(condition, what, limit=LIMIT):
     while not condition():
         if time.monotonic() > until:
             raise AssertionError(f"not within {limit} s: {what}")
-        time.sleep(0.005)
+        time.sleep(0.02)
 
 
 class Gzserver:
@@ -32,7 +33,7 @@ class Gzserver:
             rospy.set_param(f"{NODE}/{name}", value)
         self._log = tempfile.TemporaryFile()  # noqa: SIM115  (as long as the process)
         self.process = subprocess.Popen(
-            ["rosrun", "gazebo_ros", "gzserver", *options, "-u", WORLD],
+            [find_node("gazebo_ros", "gzserver")[0], *options, "-u", WORLD],
             stdout=self._log, stderr=subprocess.STDOUT)
 
     def wait_until_ready(self):

@@ -10,13 +10,14 @@ from controller_manager_msgs.srv import ListControllerTypes, ReloadControllerLib
 from gazebo_msgs.srv import DeleteModel, SpawnModel
 from geometry_msgs.msg import Pose
 from rosgraph_msgs.msg import Clock
+from roslib.packages import find_node
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool, Float64, Float64MultiArray
 from std_srvs.srv import Empty
 
 
 def dynparam(*words):
-    done = subprocess.run(["rosrun", "dynamic_reconfigure", "dynparam", *words], text=True,
+    done = subprocess.run([find_node("dynamic_reconfigure", "dynparam")[0], *words], text=True,
                           capture_output=True, timeout=LIMIT, check=True)
     return done.stdout
 

@@ -16,6 +16,7 @@ from gzserver_process import LIMIT, NODE, Gzserver, wait_until
 
 LINE = re.compile(r"A simulator runs already on this master \(world camera_robot, started \d+ "
                   r"(s|min) ago\)\. End it with Ctrl-C in its terminal, then type this again\.")
+SERVER = ("rosrun", "gazebo_ros", "gzserver")
 FIRST_ROBOT, SECOND_ROBOT = "the first's", "the second's"
 SECOND_LAUNCH = f"""<launch>
   <param name="robot_description" value="{SECOND_ROBOT}"/>
@@ -28,11 +29,28 @@ SECOND_LAUNCH = f"""<launch>
 </launch>"""
 
 
-class Second(unittest.TestCase):
-    def start(self, *options):
-        server = Gzserver(*options)
-        self.addCleanup(server.end, signal.SIGKILL)
-        return server
+def run_to_its_end(*command):
+    """What a program prints that is to end with exit code 1."""
+    done = subprocess.run(command, text=True, timeout=LIMIT,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    assert done.returncode == 1, done.stdout
+    return done.stdout
+
+
+def assert_unharmed(server, uri):
+    assert rosgraph.Master("/test").lookupNode(NODE) == uri
+    assert "robot" in server.call("get_world_properties", GetWorldProperties).model_names
+    assert server.process.poll() is None
+    assert "shutdown request" not in server.output()
+
+
+class SecondBesideOneThatRuns(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.first = Gzserver()
+        cls.addClassCleanup(cls.first.end, signal.SIGKILL)
+        cls.first.wait_until_ready()
+        cls.uri = rosgraph.Master("/test").lookupNode(NODE)
 
     def launch(self, attribute=""):
         folder = tempfile.TemporaryDirectory()
@@ -41,60 +59,45 @@ class Second(unittest.TestCase):
         path.write_text(SECOND_LAUNCH.replace("NS", attribute))
         return "roslaunch", str(path)
 
-    def run_to_its_end(self, *command):
-        """What a program prints that is to end with exit code 1."""
-        done = subprocess.run(command, text=True, timeout=LIMIT,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-        self.assertEqual(done.returncode, 1, done.stdout)
-        return done.stdout
-
-    def assert_unharmed(self, server, uri):
-        self.assertEqual(rosgraph.Master("/test").lookupNode(NODE), uri)
-        self.assertIn("robot", server.call(
-            "get_world_properties", GetWorldProperties).model_names)
-        self.assertIsNone(server.process.poll())
-        self.assertNotIn("shutdown request", server.output())
-
     def test_a_second_server_ends_with_one_line(self):
-        first = self.start().wait_until_ready()
-        uri = rosgraph.Master("/test").lookupNode(NODE)
-        done = self.run_to_its_end("rosrun", "gazebo_ros", "gzserver")
+        done = run_to_its_end(*SERVER)
         self.assertRegex(done, rf"^{LINE.pattern}\n$")
-        self.assert_unharmed(first, uri)
+        assert_unharmed(self.first, self.uri)
 
     def test_a_second_launch_ends_before_it_sets_or_starts_anything(self):
-        first = self.start().wait_until_ready()
-        uri = rosgraph.Master("/test").lookupNode(NODE)
         rospy.set_param("/robot_description", FIRST_ROBOT)
-        done = self.run_to_its_end(*self.launch())
+        done = run_to_its_end(*self.launch())
         self.assertRegex(done.splitlines()[-1], rf"^{LINE.pattern}$", done)
         for other in ("process[", "RLException", "Traceback"):
             self.assertNotIn(other, done)
         self.assertEqual(rospy.get_param("/robot_description"), FIRST_ROBOT)
-        self.assert_unharmed(first, uri)
+        assert_unharmed(self.first, self.uri)
 
     def test_a_launch_in_another_namespace_runs_beside_it(self):
-        first = self.start().wait_until_ready()
-        uri = rosgraph.Master("/test").lookupNode(NODE)
         with subprocess.Popen(self.launch('ns="two"')) as launched:
             try:
                 rospy.wait_for_service(f"/two{NODE}/get_world_properties", LIMIT)
-                self.assert_unharmed(first, uri)
+                assert_unharmed(self.first, self.uri)
             finally:
                 launched.send_signal(signal.SIGINT)
+
+    def test_one_that_hangs_is_named(self):
+        self.first.process.send_signal(signal.SIGSTOP)
+        self.addCleanup(self.first.process.send_signal, signal.SIGCONT)
+        self.assertIn("does not answer (world camera_robot, started", run_to_its_end(*SERVER))
+
+
+class SecondAndFirstEndOrBegin(unittest.TestCase):
+    def start(self):
+        server = Gzserver()
+        self.addCleanup(server.end, signal.SIGKILL)
+        return server
 
     def test_one_that_was_killed_does_not_block_the_next(self):
         first = self.start().wait_until_ready()
         first.end(signal.SIGKILL)
         self.assertTrue(rosgraph.Master("/test").lookupNode(NODE))  # still registered
         self.start().wait_until_ready()
-
-    def test_one_that_hangs_is_named(self):
-        first = self.start().wait_until_ready()
-        first.process.send_signal(signal.SIGSTOP)
-        self.addCleanup(first.process.send_signal, signal.SIGCONT)
-        self.assertIn("does not answer (world camera_robot, started",
-                      self.run_to_its_end("rosrun", "gazebo_ros", "gzserver"))
 
     def test_of_two_that_start_at_once_one_runs(self):
         servers = [self.start(), self.start()]
@@ -103,9 +106,9 @@ class Second(unittest.TestCase):
         loser, winner = sorted(servers, key=lambda server: server.process.poll() is None)
         self.assertEqual(loser.process.returncode, 1)
         self.assertIn("A simulator runs already on this master", loser.output())
-        self.assert_unharmed(winner.wait_until_ready(), rosgraph.Master("/test").lookupNode(NODE))
+        assert_unharmed(winner.wait_until_ready(), rosgraph.Master("/test").lookupNode(NODE))
 
 
 if __name__ == "__main__":
     rospy.init_node("second_contract", disable_rostime=True)
-    rostest.rosrun("bullet_sim_ros", "second", Second)
+    rostest.rosrun("bullet_sim_ros", "second", "__main__")
