@@ -9,8 +9,9 @@ import time
 import rospy
 from fake_controllers import LIMIT
 from geometry_msgs.msg import Twist
+from roslib.packages import find_node
 
-NODE = ("rosrun", "car_control", "keyboard_control.py")
+NODE = (find_node("car_control", "keyboard_control.py")[0],)
 
 
 class Sent:

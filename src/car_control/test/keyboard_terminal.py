@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """keyboard_control.py --terminal, typed at through a pseudo-terminal."""
 
 import fcntl
@@ -6,14 +5,11 @@ import os
 import pty
 import signal
 import subprocess
-import sys
 import termios
 import threading
 import time
 import unittest
 
-import rospy
-import rostest
 from fake_controllers import LIMIT, wait_until
 from keyboard import NODE, Sent, end_node, start_node
 
@@ -138,8 +134,3 @@ class KeyboardTerminal(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
         self.assertIn("no terminal to read keys from", done.stderr)
-
-
-if __name__ == "__main__":
-    rospy.init_node("keyboard_terminal_test")
-    rostest.rosrun("car_control", "keyboard_terminal", KeyboardTerminal, sys.argv)

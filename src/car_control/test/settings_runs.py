@@ -1,34 +1,33 @@
-#!/usr/bin/env python3
 """Two runs of a node on one master: what was set for the first one is gone in the second."""
 
-import re
+import contextlib
 import signal
 import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
 import rospkg
 import rospy
-import rostest
 import yaml
+from dynamic_reconfigure.client import Client
+from roslib.packages import find_node
 
 NODE = "/lane_follow"
-DYNPARAM = ("rosrun", "dynamic_reconfigure", "dynparam")
 LIMIT = 60  # s, wall
 
 
-def dynparam(word, *arguments):
-    """What the tutorial's command prints."""
-    command = (*DYNPARAM, word, f"--timeout={LIMIT}", NODE, *arguments)
-    done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT + 10, check=True)
-    return done.stdout
+@contextlib.contextmanager
+def sliders():
+    """The node's settings as rqt_reconfigure has them."""
+    client = Client(NODE, timeout=LIMIT)
+    yield client
+    client.close()
 
 
 def settings_now():
-    table = dynparam("get").partition("'groups'")[0]
-    return {name: float(value) for name, value in re.findall(r"'(\w+)': ([-+.\de]+)", table)}
+    with sliders() as client:
+        return client.get_configuration(LIMIT)
 
 
 class SettingsRuns(unittest.TestCase):
@@ -44,7 +43,7 @@ class SettingsRuns(unittest.TestCase):
         """Start the node with these changes in its file."""
         self.file.write_text(yaml.safe_dump({**self.table, **changes}), encoding="utf-8")
         process = subprocess.Popen(
-            ("rosrun", "car_control", "lane_follow.py", f"_config:={self.file}", *arguments)
+            (find_node("car_control", "lane_follow.py")[0], f"_config:={self.file}", *arguments)
         )
         self.addCleanup(process.wait, LIMIT)
         self.addCleanup(process.kill)
@@ -54,7 +53,8 @@ class SettingsRuns(unittest.TestCase):
         first = self.run_node("_kp:=2.5", max_speed=1.9)
         before = settings_now()
         self.assertEqual((before["kp"], before["ki"], before["max_speed"]), (2.5, 0.7, 1.9))
-        dynparam("set", "kd", "0.25")
+        with sliders() as client:
+            client.update_configuration({"kd": 0.25})
         self.assertEqual(settings_now()["kd"], 0.25)
         first.send_signal(ending)
         first.wait(LIMIT)
@@ -70,7 +70,3 @@ class SettingsRuns(unittest.TestCase):
 
     def test_nothing_stays_after_a_kill(self):
         self.second_run_after(signal.SIGKILL)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("car_control", "settings_runs", SettingsRuns, sys.argv)
