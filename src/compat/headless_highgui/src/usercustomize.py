@@ -2,7 +2,7 @@
 
 cv2 gets its windows, Tk a line for want of a screen, some modules get the names that they had
 when a script was written, and rospy's subscribers say so when their simulator has ended. A
-roslaunch that a program of ours refuses ends with one line.
+roslaunch that a program of ours refuses ends with one line; each begins without setuptools.
 Programs of ours print in the language of the locale, and end at Ctrl-C without a traceback.
 """
 
@@ -22,6 +22,8 @@ class Watch:
 
     @classmethod
     def find_spec(cls, name, _path=None, _target=None):
+        if name == "rosclean":
+            take_own_distutils()
         if name not in cls.waited_for:
             return None
         from importlib.util import find_spec
@@ -42,6 +44,16 @@ class Watch:
             except Exception as error:  # a script that needs none of it must not fail here
                 print(f"headless_highgui: {module.__name__} is not amended: {error}",
                       file=sys.stderr)
+
+
+def take_own_distutils():
+    """For roslaunch, by way of rosclean, Python's own distutils instead of setuptools' copy.
+
+    To import all of setuptools takes as long as to import roslaunch.
+    """
+    hack = sys.modules.get("_distutils_hack")
+    if hack and sys.version_info < (3, 12):  # later Pythons have none of their own
+        hack.remove_shim()
 
 
 def put_old_names_back(module):

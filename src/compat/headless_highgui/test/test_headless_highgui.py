@@ -270,3 +270,9 @@ def test_a_keyboard_script_without_a_screen_ends_with_what_drives(display):
 def test_windows_with_words_of_their_own_keep_them():
     done = run_python("import tkinter\ntkinter.Tk(className='turtlesim')", {"DISPLAY": ""})
     assert done.stderr.splitlines()[-1].endswith('display ""')
+
+
+@pytest.mark.skipif(sys.version_info >= (3, 12), reason="Python has no distutils of its own")
+def test_roslaunch_begins_without_setuptools():
+    code = "import rosclean, sys; print('setuptools' in sys.modules, 'distutils' in sys.modules)"
+    assert run_python(code).stdout == "False True\n"
