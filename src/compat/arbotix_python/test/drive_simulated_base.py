@@ -12,10 +12,11 @@ import rostest
 import tf2_ros
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
+from roslib.packages import find_node
 from sensor_msgs.msg import JointState
 
 LIMIT = 60.0  # s, for whatever is waited for
-DRIVER = ("rosrun", "arbotix_python", "arbotix_driver")
+DRIVER = (find_node("arbotix_python", "arbotix_driver")[0],)
 RADIUS = 0.2 / 0.5
 
 

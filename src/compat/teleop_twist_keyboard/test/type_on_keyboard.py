@@ -16,8 +16,9 @@ import unittest
 import rospy
 import rostest
 from geometry_msgs.msg import Twist, TwistStamped
+from roslib.packages import find_node
 
-NODE = ("rosrun", "teleop_twist_keyboard", "teleop_twist_keyboard.py")
+NODE = (find_node("teleop_twist_keyboard", "teleop_twist_keyboard.py")[0],)
 LIMIT = 60.0  # s, for whatever is waited for
 
 

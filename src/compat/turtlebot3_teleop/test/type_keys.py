@@ -17,8 +17,9 @@ from itertools import pairwise
 import rospy
 import rostest
 from geometry_msgs.msg import Twist
+from roslib.packages import find_node
 
-NODE = ("rosrun", "turtlebot3_teleop", "turtlebot3_teleop_key")
+NODE = (find_node("turtlebot3_teleop", "turtlebot3_teleop_key")[0],)
 LIMIT = 60.0  # s, for whatever is waited for
 
 

@@ -9,6 +9,7 @@ import unittest
 import rospy
 import rostest
 from dynamic_reconfigure.client import Client
+from roslib.packages import find_node
 from spoiling_relay import (
     BLANK,
     FROZEN,
@@ -26,7 +27,7 @@ SAID = {BLANK: "blank", FROZEN: "frozen", WRONG_STEP: "step", NONE: "no fresh im
 
 
 def start(script, *arguments):
-    return subprocess.Popen(["rosrun", "ai_robot_tracking", script, *arguments],
+    return subprocess.Popen([find_node("ai_robot_tracking", script)[0], *arguments],
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
