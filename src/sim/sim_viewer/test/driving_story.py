@@ -1,14 +1,11 @@
-#!/usr/bin/env python3
 """The page drives the waffle, and everything that must stop it does, within 0.3 s."""
 
-import sys
 import time
 import unittest
 
 import chromium
 import firefox
 import rospy
-import rostest
 from background import wait_until
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
@@ -240,9 +237,3 @@ class Driving(Keys):
         for _ in range(round(seconds / PERIOD)):
             link.send("drive", linear=linear, angular=angular)
             rospy.rostime.wallsleep(PERIOD)
-
-
-if __name__ == "__main__":
-    rospy.init_node("driving", disable_rostime=True)
-    kind = Keys if rospy.get_param("~browser", "") == "firefox" else Driving
-    rostest.rosrun("sim_viewer", "driving", kind, sys.argv)

@@ -1,7 +1,5 @@
-#!/usr/bin/env python3
 """The page shows course, robot, pictures and all tabs, to five at once, and asks nobody else."""
 
-import sys
 import time
 import unittest
 from urllib.parse import urlsplit
@@ -9,7 +7,6 @@ from urllib.parse import urlsplit
 import cv2
 import numpy as np
 import rospy
-import rostest
 from background import wait_until
 from chromium import Browser
 from geometry_msgs.msg import Twist, Vector3
@@ -30,6 +27,7 @@ class Showing(unittest.TestCase):
         cls.url = wait_until(lambda: rospy.get_param("/sim_viewer/url", ""), "the page's address")
         cls.browser = Browser()
         cls.addClassCleanup(cls.browser.close)
+        cls.addClassCleanup(rospy.ServiceProxy("/gazebo/reset_world", Empty))
         cls.page = cls.browser.open(cls.url)
         cls.page.wait_for("document.querySelectorAll('#tabs button').length >= 11")
 
@@ -109,8 +107,3 @@ class Showing(unittest.TestCase):
                  if not url.startswith(("data:", "blob:"))}
         self.assertEqual(asked, {own})
         self.assertEqual(self.page.errors, [])
-
-
-if __name__ == "__main__":
-    rospy.init_node("showing", disable_rostime=True)
-    rostest.rosrun("sim_viewer", "showing", Showing, sys.argv)
