@@ -18,7 +18,12 @@ from bullet_sim.control.controllers.servo import Servo
 from bullet_sim.control.hardware import open_hardware
 from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.control.pid import Pid, PidGains
-from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters, wheels_from_tags
+from bullet_sim.drives.diff_drive import (
+    DiffDrive,
+    DiffDriveParameters,
+    driven_wheels,
+    wheels_from_tags,
+)
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim.formats.urdf.transmission import read_transmissions
 from bullet_sim.model import Model
@@ -48,8 +53,9 @@ class GazeboDiffDrive:
     def __init__(self, world: World, robot: Model, _urdf: Element, _settings: Path | None):
         tags = next(PluginParameters(robot.name, plugin) for plugin in robot.description.plugins
                     if plugin.filename == "libgazebo_ros_diff_drive.so")
-        self._drive = DiffDrive(
-            *wheels_from_tags(robot, tags), DiffDriveParameters.from_tags(tags))
+        parameters = DiffDriveParameters.from_tags(tags)
+        wheels = driven_wheels(robot, wheels_from_tags(robot, tags), parameters, tags, robot.name)
+        self._drive = DiffDrive(*wheels, parameters)
         self._world, self._updated = world, world.time
         self._rate = TickRate(tags.number("updateRate", 100.0), world.timestep, world.tick)
         self.command = self._drive.command

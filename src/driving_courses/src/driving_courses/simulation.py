@@ -13,9 +13,10 @@ from bullet_sim.description import ModelDescription, Noise, WorldDescription
 from bullet_sim.formats.loading import load_model
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.formats.xml_values import parse_xml
+from bullet_sim.plugin_tags import PluginParameters
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.renderer import Renderer, open_renderer
-from bullet_sim.sensors.camera import Camera
+from bullet_sim.sensors.camera import Camera, pictures_rate
 from bullet_sim.tick_rate import TickRate
 from bullet_sim.world import World
 from driving_courses.course import CourseSpec
@@ -46,8 +47,8 @@ class Simulation:
         self._renderer: Renderer | None = None
         self._world: World | None = None
         sensor = next(s for link in self._robot.links for s in link.sensors if s.cameras)
-        self.rate_hz = sensor.update_rate or float(
-            sensor.plugins[0].element.findtext("updateRate"))  # of pictures
+        tags = PluginParameters(self._robot.name, sensor.plugins[0])
+        self.rate_hz = pictures_rate(sensor.update_rate, tags.number("updateRate", 0.0))
 
     def begin(self, world: WorldDescription, start: tuple[float, float, float],
               episode: Episode) -> None:

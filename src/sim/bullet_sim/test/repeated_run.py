@@ -29,8 +29,8 @@ from bullet_sim.drives.diff_drive import DiffDrive, DiffDriveParameters
 from bullet_sim.pose import IDENTITY, Pose
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.sensors.camera import Camera
+from bullet_sim.sensors.imu import LinkMotion
 from bullet_sim.sensors.laser import Laser
-from bullet_sim.sensors.link_motion import LinkMotion
 from bullet_sim.world import World
 
 SECONDS = 3.0

@@ -4,7 +4,7 @@ from xml.etree.ElementTree import fromstring
 
 import pytest
 
-from bullet_sim.control.joint_parameters import read_joint_gains, read_joint_limits
+from bullet_sim.control.hardware import read_joint_gains, read_joint_limits
 from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.control.pid import PidGains
 from bullet_sim.description import JointLimits

@@ -14,7 +14,7 @@ from bullet_sim.description import (
     ModelDescription,
     WorldDescription,
 )
-from bullet_sim.mechanisms.kobuki_bumpers import pressed_bumpers
+from bullet_sim.drives.kobuki import pressed_bumpers
 from bullet_sim.mechanisms.spring_damper import rotation_vector
 from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import IDENTITY, Pose, quaternion_from_rpy

@@ -7,6 +7,7 @@ from rigs import body, hinge, rig, slider
 
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim.description import PhysicsDescription, WorldDescription
+from bullet_sim.drives.kobuki import WheelDrop
 from bullet_sim.errors import SimulationError
 from bullet_sim.mechanisms.elevator import Elevator
 from bullet_sim.mechanisms.harness import Harness
@@ -14,7 +15,6 @@ from bullet_sim.mechanisms.joint_poses import JointPose, JointPoses
 from bullet_sim.mechanisms.mimic import MimicJoint, MimicParameters
 from bullet_sim.mechanisms.spring_damper import SpringDamper
 from bullet_sim.mechanisms.vacuum import Vacuum, VacuumParameters
-from bullet_sim.mechanisms.wheel_drop import WheelDrop
 from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import Pose, quaternion_from_rpy
 from bullet_sim.twist import Twist

@@ -17,10 +17,9 @@ from bullet_sim.description import (
     SensorDescription,
 )
 from bullet_sim.pose import IDENTITY, Pose
-from bullet_sim.sensors.ground_truth import GroundTruth
-from bullet_sim.sensors.imu import ImuReading, ImuSensor
+from bullet_sim.sensors.imu import ImuReading, ImuSensor, LinkMotion, LinkMotionReading
 from bullet_sim.sensors.laser import Laser
-from bullet_sim.sensors.link_motion import LinkMotion, LinkMotionReading
+from bullet_sim.sensors.odometry import GroundTruth
 from bullet_sim.twist import Twist
 from bullet_sim.world import World
 

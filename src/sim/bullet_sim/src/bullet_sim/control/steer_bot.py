@@ -11,8 +11,7 @@ from dataclasses import dataclass
 
 from bullet_sim.control.controllers.mobile_base import read_distance
 from bullet_sim.control.handles import CommandHandle, JointHandle
-from bullet_sim.control.hardware import RobotHardware
-from bullet_sim.control.joint_parameters import read_joint_limits
+from bullet_sim.control.hardware import RobotHardware, read_joint_limits
 from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.description import JointLimits
 from bullet_sim.errors import check_lengths

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from dataclasses import dataclass
 
@@ -11,6 +12,8 @@ from bullet_sim.model import Model
 from bullet_sim.plugin_tags import LoggedParameters, PluginParameters
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.twist import add, dot, negative
+
+log = logging.getLogger("bullet_sim.plugins")
 
 SETTLED = 0.01  # m/s: closer to the target than this, the command jumps to it
 
@@ -40,6 +43,25 @@ def wheels_from_tags(model: Model, tags: PluginParameters | LoggedParameters
     """The joints of the left and the right wheel, by tags; UnknownName if there is none."""
     left, right = tags.text("leftJoint", "left_joint"), tags.text("rightJoint", "right_joint")
     return model.joint(left), model.joint(right)
+
+
+def driven_wheels(model: Model, wheels: tuple[Joint, Joint], parameters: DiffDriveParameters,
+                  tags: PluginParameters, label: str) -> tuple[Joint, Joint]:
+    """The wheels that are driven as left and right: swapped for files from before Melodic.
+
+    Indigo to Lunar swapped them unless <legacyMode> was false, so files of that time call the
+    right wheel left. Noetic, which does not read the tag, turns such robots the wrong way.
+    `label` begins the warning of a swap.
+    """
+    left, right = wheels
+    if not tags.flag("legacyMode", True) or not turns_backwards(
+            *((joint, model.links[joint.description.child].pose) for joint in wheels), parameters):
+        return left, right
+    log.warning("%s: <leftJoint> %s is the right wheel, seen where it drives to: taken as "
+                "written for Indigo to Lunar, whose <legacyMode> swapped the two; for the "
+                "behaviour of Melodic and Noetic write <legacyMode>false</legacyMode>",
+                label, left.name)
+    return right, left
 
 
 class DiffDrive:

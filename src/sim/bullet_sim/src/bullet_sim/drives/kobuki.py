@@ -1,13 +1,21 @@
-"""Kobuki's base: two wheels with a command time-out, odometry from wheels and gyroscope."""
+"""Kobuki's base: wheels with a command time-out, odometry, bumpers, wheels without ground."""
 
 import math
+from collections.abc import Iterable, Mapping
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.joint import Joint
+from bullet_sim.physics.contacts import Contact
 from bullet_sim.pose import Pose, quaternion_from_rpy
 from bullet_sim.sensors.imu import ImuReading, ImuSensor
 from bullet_sim.sensors.odometry import OdometryReading
 from bullet_sim.world import World
+
+# Contacts below these heights are the floor, above them parts on the base
+LOWEST, HIGHEST = 0.01, 0.13  # m above the model frame
+SECTORS = {"left": (math.pi / 6, math.pi / 2), "center": (-math.pi / 6, math.pi / 6),
+           "right": (-math.pi / 2, -math.pi / 6)}  # rad from straight ahead, counter-clockwise
+PATIENCE = 0.1  # s without contact: a wheel that hops over a threshold has not dropped
 
 
 class Kobuki:
@@ -78,3 +86,39 @@ class Kobuki:
         if self._reading is None:
             self._reading = self._imu.sample()
         return self._reading
+
+
+def pressed_bumpers(contacts: Iterable[Contact], link: str, robot: Pose) -> set[str]:
+    """Of the three bumpers, those that are pressed: names of `SECTORS`.
+
+    `link` is the bumper's scoped name, `robot` the model frame.
+    """
+    pressed = set()
+    heading = robot.rpy()[2]
+    for contact in contacts:
+        if link not in contact.links:
+            continue
+        sign = -1.0 if contact.links[0] == link else 1.0  # from the robot outwards
+        if not LOWEST <= contact.position[2] - robot.position[2] <= HIGHEST:
+            continue
+        angle = math.remainder(
+            math.atan2(sign * contact.normal[1], sign * contact.normal[0]) - heading, math.tau)
+        pressed |= {name for name, (low, high) in SECTORS.items() if low <= angle <= high}
+    return pressed
+
+
+class WheelDrop:
+    """Finds wheels without ground contact. Call `dropped` regularly: it remembers the last one."""
+
+    def __init__(self, wheels: Mapping[str, str], time: float):
+        """`wheels`: scoped names of the wheels' links by wheel name; `time` is now (s)."""
+        self._wheels = wheels
+        self._touched = dict.fromkeys(wheels, time)
+
+    def dropped(self, contacts: Iterable[Contact], time: float) -> set[str]:
+        """Names of the wheels without contact for a while, at `time` (s)."""
+        touching = {link for contact in contacts for link in contact.links}
+        for name, link in self._wheels.items():
+            if link in touching or self._touched[name] > time:  # time was reset
+                self._touched[name] = time
+        return {name for name, last in self._touched.items() if time - last > PATIENCE}

@@ -18,6 +18,8 @@ from bullet_sim.world import World
 
 log = logging.getLogger(__name__)
 
+DEFAULT_RATE = 30.0  # Hz, where neither sensor nor plugin names one (Gazebo: as fast as it can)
+
 
 @dataclass(frozen=True)
 class CaptureState:
@@ -146,3 +148,13 @@ def _mistake(camera: CameraDescription, renderer: Renderer, wide_angle: bool) ->
         return (f"<clip> is from {camera.near} to {camera.far} m; it needs a <near> of more than 0 "
                 "and a <far> beyond it")
     return None
+
+
+def pictures_rate(sensor_hz: float, plugin_hz: float) -> float:
+    """The sensor's `<update_rate>`, thinned to the plugin's `<updateRate>`, Hz; 0: there is none.
+
+    Only whole frames can be skipped (gazebo_ros_camera.cpp, OnNewFrame): 30 Hz thinned to 20 is 15.
+    """
+    if sensor_hz > 0 and plugin_hz > 0:
+        return sensor_hz / max(1, math.ceil(sensor_hz / plugin_hz - 1e-9))
+    return max(sensor_hz, plugin_hz) or DEFAULT_RATE

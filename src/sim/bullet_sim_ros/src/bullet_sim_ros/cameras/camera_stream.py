@@ -1,19 +1,18 @@
 """The images of a sensor: captured in the loop, rendered and published in the drawing thread."""
 
 import logging
-import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 
 from std_msgs.msg import Empty
 
+from bullet_sim.sensors.camera import pictures_rate
 from bullet_sim_ros.cameras.camera_topics import CameraSettings, CameraTopics, Wanted
 from bullet_sim_ros.plugin_host import PluginContext
 from bullet_sim_ros.reconfigure_server import Value, offer_changes
 
 log = logging.getLogger("bullet_sim.plugins")
 
-DEFAULT_RATE = 30.0  # Hz, where neither sensor nor plugin names one (Gazebo: as fast as it can)
 SLOWEST, FASTEST, FIRST_RATE = 1.0, 50.0, 2.0  # Hz; imager_rate of cfg/GazeboRosCamera.cfg
 
 
@@ -102,16 +101,6 @@ class CameraStream:
             self._drawn.exception()
         self._drawn = None
         self._context.host.drawing.settle_rest()
-
-
-def pictures_rate(sensor_hz: float, plugin_hz: float) -> float:
-    """The sensor's `<update_rate>`, thinned to the plugin's `<updateRate>`, Hz; 0: there is none.
-
-    Only whole frames can be skipped (gazebo_ros_camera.cpp, OnNewFrame): 30 Hz thinned to 20 is 15.
-    """
-    if sensor_hz > 0 and plugin_hz > 0:
-        return sensor_hz / max(1, math.ceil(sensor_hz / plugin_hz - 1e-9))
-    return max(sensor_hz, plugin_hz) or DEFAULT_RATE
 
 
 def _offer_rate(context: PluginContext, settings: CameraSettings,

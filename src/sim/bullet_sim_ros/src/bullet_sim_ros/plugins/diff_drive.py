@@ -8,10 +8,9 @@ from sensor_msgs.msg import JointState
 from bullet_sim.drives.diff_drive import (
     DiffDrive,
     DiffDriveParameters,
-    turns_backwards,
+    driven_wheels,
     wheels_from_tags,
 )
-from bullet_sim.joint import Joint
 from bullet_sim.plugin_tags import LoggedParameters
 from bullet_sim.sensors.joint_states import sample_joints
 from bullet_sim.sensors.odometry import WheelOdometry
@@ -36,7 +35,7 @@ class DiffDrivePlugin:
         p = LoggedParameters(context.parameters, "DiffDrive", namespace)
         self._joints = wheels_from_tags(context.model, p)
         geometry = DiffDriveParameters.from_tags(p)
-        driven = self._as_driven(p.label, geometry)
+        driven = driven_wheels(context.model, self._joints, geometry, context.parameters, p.label)
         self._drive = DiffDrive(*driven, geometry)
         self._odometry_source = OdometrySource(context, p, driven, WheelOdometry(
             geometry.wheel_separation, geometry.wheel_diameter))
@@ -62,24 +61,6 @@ class DiffDrivePlugin:
         ) if p.flag("publishWheelJointState", False) else None
         context.every(p.number("updateRate", 100.0), self._update)
         context.on_reset(self._restart)
-
-    def _as_driven(self, label: str, geometry: DiffDriveParameters) -> tuple[Joint, Joint]:
-        """The wheels that are driven as left and right: swapped for files from before Melodic.
-
-        Indigo to Lunar swapped them unless <legacyMode> was false, so files of that time call the
-        right wheel left. Noetic, which does not read the tag, turns such robots the wrong way.
-        """
-        left, right = self._joints
-        links = self._context.model.links
-        if not self._context.parameters.flag("legacyMode", True) or not turns_backwards(
-                *((joint, links[joint.description.child].pose) for joint in self._joints),
-                geometry):
-            return left, right
-        log.warning("%s: <leftJoint> %s is the right wheel, seen where it drives to: taken as "
-                    "written for Indigo to Lunar, whose <legacyMode> swapped the two; for the "
-                    "behaviour of Melodic and Noetic write <legacyMode>false</legacyMode>",
-                    label, left.name)
-        return right, left
 
     def _command(self, msg: Twist) -> None:
         self._commanded = self._context.world.time

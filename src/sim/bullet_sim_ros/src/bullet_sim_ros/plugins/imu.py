@@ -7,8 +7,7 @@ from std_srvs.srv import Empty, EmptyResponse
 from bullet_sim.errors import UnknownName
 from bullet_sim.link import Link
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
-from bullet_sim.sensors.imu import ImuSensor
-from bullet_sim.sensors.link_motion import LinkMotion
+from bullet_sim.sensors.imu import ImuSensor, LinkMotion
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, no_tf_prefix, plugin
 

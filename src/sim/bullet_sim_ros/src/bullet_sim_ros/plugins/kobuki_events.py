@@ -5,10 +5,8 @@ import math
 from kobuki_msgs.msg import BumperEvent, CliffEvent, WheelDropEvent
 
 from bullet_sim.description import SensorDescription
-from bullet_sim.drives.kobuki import Kobuki
+from bullet_sim.drives.kobuki import SECTORS, Kobuki, WheelDrop, pressed_bumpers
 from bullet_sim.link import Link
-from bullet_sim.mechanisms.kobuki_bumpers import SECTORS, pressed_bumpers
-from bullet_sim.mechanisms.wheel_drop import WheelDrop
 from bullet_sim.sensors.laser import Laser
 from bullet_sim_ros import names
 from bullet_sim_ros.plugin_host import PluginContext

@@ -2,7 +2,7 @@
 
 import logging
 
-from bullet_sim.control.joint_parameters import GAINS, read_joint_gains
+from bullet_sim.control.hardware import GAINS, read_joint_gains
 from bullet_sim.control.pid import Pid
 from bullet_sim.mechanisms.mimic import MimicJoint, MimicParameters
 from bullet_sim_ros import names, params

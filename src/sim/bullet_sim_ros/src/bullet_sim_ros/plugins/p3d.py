@@ -3,7 +3,7 @@
 from nav_msgs.msg import Odometry
 
 from bullet_sim.pose import Pose, quaternion_from_rpy
-from bullet_sim.sensors.ground_truth import GroundTruth
+from bullet_sim.sensors.odometry import GroundTruth
 from bullet_sim_ros import convert
 from bullet_sim_ros.plugin_host import PluginContext, SensorPlugin, plugin
 

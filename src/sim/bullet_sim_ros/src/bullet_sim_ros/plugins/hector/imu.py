@@ -9,7 +9,7 @@ from std_srvs.srv import Empty, EmptyResponse
 
 from bullet_sim.pose import conjugate, multiply, quaternion_from_rpy, rotate
 from bullet_sim.sensors.error_model import ErrorModel, attitude_error
-from bullet_sim.sensors.link_motion import LinkMotion
+from bullet_sim.sensors.imu import LinkMotion
 from bullet_sim_ros import convert, names
 from bullet_sim_ros.plugin_host import PluginContext, plugin
 from bullet_sim_ros.plugins.hector import common
