@@ -4,16 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from pointcloud_to_laserscan.projection import (
-    BadCloud,
-    Settings,
-    points_of,
-    ranges_of,
-    rotation,
-    xyz_of,
-)
-
-FIELDS = [("x", 0, 7), ("y", 4, 7), ("z", 8, 7)]
+from pointcloud_to_laserscan.projection import Settings, points_of, ranges_of, rotation
 
 
 def test_upstreams_defaults():
@@ -50,28 +41,6 @@ def test_scan_to_points_and_back():
 def test_a_quarter_turn_to_the_left():
     half = math.sqrt(0.5)
     assert rotation(0, 0, half, half) @ [1, 0, 0] == pytest.approx([0, 1, 0])
-
-
-def test_clouds_of_rows_with_gaps_and_other_byte_orders():
-    points = np.arange(12, dtype=">f4").reshape(2, 2, 3)
-    data = b"".join(row.tobytes() + b"gap!" for row in points)
-    read = xyz_of(data, FIELDS, 2, 2, 12, 28, True)
-    assert read == pytest.approx(points.reshape(4, 3))
-
-
-def test_clouds_that_are_none():
-    with pytest.raises(BadCloud, match="no field z; it has x, y"):
-        xyz_of(b"", FIELDS[:2], 1, 1, 12, 12, False)
-    with pytest.raises(BadCloud, match="2 rows of 2 points of 12 bytes, and has 5 bytes"):
-        xyz_of(b"short", FIELDS, 2, 2, 12, 24, False)
-    assert xyz_of(b"", FIELDS, 0, 0, 12, 0, False).shape == (0, 3)
-
-
-@pytest.mark.parametrize("field", [("x", 0, 0), ("z", 10, 7)])
-def test_a_field_that_no_point_can_hold_is_named(field):
-    fields = [entry for entry in FIELDS if entry[0] != field[0]] + [field]
-    with pytest.raises(BadCloud, match=f"field {field[0]} has type {field[2]} at byte {field[1]}"):
-        xyz_of(bytes(12), fields, 1, 1, 12, 12, False)
 
 
 @pytest.mark.parametrize("wrong", [{"angle_min": "a"}, {"use_inf": "yes"}, {"range_max": True}])

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 from geometry_msgs.msg import Transform
-from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2, PointField
+from node_basics.point_cloud2 import positions
+from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2
 
 NEARLY = 1e-4   # m by which an infinite range is put below range_max, as upstream
 LONGEST = 60.0  # s, longest sweep; tf's buffer holds less
-
-NUMBERS = {PointField.FLOAT32: "f4", PointField.FLOAT64: "f8"}
 
 
 def timed_points(message: LaserScan | PointCloud | PointCloud2, data_type: str,
@@ -17,7 +16,8 @@ def timed_points(message: LaserScan | PointCloud | PointCloud2, data_type: str,
     """(points (N, 3), times (N,), s after the stamp); ValueError for an invalid message."""
     if data_type == "LaserScan":
         return points_of_scan(message, inf_is_valid)
-    points = points_of_cloud(message) if data_type == "PointCloud" else points_of_cloud2(message)
+    points = points_of_cloud(message) if data_type == "PointCloud" else positions(message)
+    points = points[np.isfinite(points).all(axis=1)]
     return points, np.zeros(len(points))
 
 
@@ -57,34 +57,8 @@ def points_of_scan(message: LaserScan, inf_is_valid: bool) -> tuple[np.ndarray, 
 
 
 def points_of_cloud(message: PointCloud) -> np.ndarray:
-    """Its finite points, (N, 3)."""
-    points = np.array([(p.x, p.y, p.z) for p in message.points], float).reshape(-1, 3)
-    return points[np.isfinite(points).all(axis=1)]
-
-
-def points_of_cloud2(message: PointCloud2) -> np.ndarray:
-    """Its finite points, (N, 3); raises ValueError for a cloud without x, y, z or too few bytes."""
-    fields = {field.name: field for field in message.fields}
-    if not all(name in fields and fields[name].datatype in NUMBERS for name in "xyz"):
-        raise ValueError("a PointCloud2 needs x, y and z as FLOAT32 or FLOAT64")
-    size = (message.height - 1) * message.row_step + message.width * message.point_step
-    if not message.width * message.height:
-        return np.zeros((0, 3))
-    if size > len(message.data):
-        raise ValueError(f"a PointCloud2 of {message.width} x {message.height} points came with "
-                         f"{len(message.data)} bytes, not {size}")
-    order = ">" if message.is_bigendian else "<"
-    try:
-        kind = np.dtype({"names": list("xyz"), "itemsize": message.point_step,
-                         "offsets": [fields[name].offset for name in "xyz"],
-                         "formats": [order + NUMBERS[fields[name].datatype] for name in "xyz"]})
-        cells = np.ndarray((message.height, message.width), kind, bytes(message.data),
-                           strides=(message.row_step, message.point_step)).ravel()
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"a PointCloud2 whose fields do not fit its point_step of "
-                         f"{message.point_step} bytes: {error}") from None
-    points = np.stack([cells[name].astype(float) for name in "xyz"], axis=1)
-    return points[np.isfinite(points).all(axis=1)]
+    """Its points, (N, 3); some may not be finite."""
+    return np.array([(p.x, p.y, p.z) for p in message.points], float).reshape(-1, 3)
 
 
 def rotation_and_translation(transform: Transform) -> tuple[np.ndarray, np.ndarray]:

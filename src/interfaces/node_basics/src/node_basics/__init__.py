@@ -1,0 +1,1 @@
+"""What nodes of all folders do in one way."""
