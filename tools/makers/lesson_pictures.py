@@ -26,13 +26,13 @@ import rospkg
 import rospy
 from cv_bridge import CvBridge
 from gazebo_msgs.srv import GetWorldProperties
+from node_basics.ending import interruptible
 from rviz_pictures import SCENES, Screen, Stage
 from sensor_msgs.msg import Image
 from std_srvs.srv import Empty
 
 from evaluation.picture import FONT, PAPER, TEXT, bgr, write_text
 from run_session.failure import RunError
-from run_session.interruption import interruptible
 from run_session.launch import Launched
 from run_session.processes import Family
 from run_session.simulator import WORLD

@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import re
 import select
-import signal
 import sys
 import termios
 import time
@@ -16,6 +15,7 @@ from dataclasses import dataclass
 
 import rospy
 from geometry_msgs.msg import Twist, TwistStamped
+from node_basics.ending import interruptible
 
 CTRL_C = "\x03"
 # One key: what function keys and arrows send (F1 is ESC O P, of which O alone would drive), or a
@@ -184,16 +184,9 @@ def say(*lines: str) -> None:
         print(line, flush=True)
 
 
-def stop(*_) -> None:
-    raise KeyboardInterrupt
-
-
 def main() -> None:
     if not sys.stdin.isatty():
         sys.exit("teleop_twist_keyboard: no terminal to read keys from; start it in a terminal")
-    # A robot may keep its last command: every way out has to pass the zero Twist below.
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, stop)
     rospy.init_node("teleop_twist_keyboard", disable_signals=True)
     drive = KeyedSpeeds(read_number("speed", 0.5), read_number("turn", 1.0),
                         read_number("speed_limit", 1000.0), read_number("turn_limit", 1000.0))
@@ -204,12 +197,12 @@ def main() -> None:
             topic.wait_for_subscriber()
             say(HELP, drive.state())
             drive_by_keys(terminal, topic, drive)
-    finally:
+    finally:  # a robot may keep its last command: every way out has to pass the zero Twist
         drive.move = STANDING
         topic.send(drive)
         time.sleep(FLUSH_TIME)
 
 
 if __name__ == "__main__":
-    with suppress(KeyboardInterrupt):
+    with suppress(KeyboardInterrupt), interruptible():
         main()

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import rospkg
 import rospy
+from node_basics.ending import at_signals
 from rospy.client import load_command_line_node_params
 
 from car_control.settings import Settings, SettingsError, load_settings
@@ -57,15 +58,8 @@ class Ending:
     def __init__(self) -> None:
         self.asked = threading.Event()
         self._done = threading.Event()
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, self._ask)
+        at_signals(self.asked.set, PATIENCE, os._exit)
         rospy.on_shutdown(self._shut_down)
-
-    def _ask(self, number: int, _frame: object) -> None:
-        self.asked.set()
-        last = threading.Timer(PATIENCE, os._exit, (128 + number,))
-        last.daemon = True
-        last.start()
 
     def done(self) -> None:
         """The last message was sent: ROS may close the connections."""

@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 
+from node_basics.ending import interruptible
 from racecar_description.track.errors import TrackError
 
 from run_session.failure import RunError
-from run_session.interruption import interruptible
 from trial_worlds.errors import WorldError
 
 MOST = 999_999          # largest count or seed

@@ -10,12 +10,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar
 
+from node_basics.ending import interruptible
+
 from evaluation.command_line import NOT_PASSED, PASSED, Parser, run_program
 from evaluation.film import FilmFile
 from evaluation.lap import LapScorer, Sample, fingerprint
 from run_session.course_file import CourseFile
 from run_session.failure import RunError
-from run_session.interruption import interruptible
 from run_session.launch import Launched
 from run_session.observer import Fingerprints, Observer, frame_figures
 from run_session.processes import read_log

@@ -10,13 +10,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import rospkg
+from node_basics.ending import interruptible
 
 from exercises.catalogue import Exercise, find_exercises
 from exercises.errors import CannotCheck, Mistake, TimeUp
 from exercises.finding import Finding
 from exercises.program import line_in, said
 from run_session.failure import RunError
-from run_session.interruption import interruptible
 
 PASSED, FAILED, COULD_NOT, INTERRUPTED = 0, 1, 2, 130
 LIMIT = 300  # s, wall: of one check

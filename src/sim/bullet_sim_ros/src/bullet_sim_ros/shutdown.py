@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 
 import rospy
+from node_basics.ending import at_signals
 
 from bullet_sim_ros.rospy_patches import report_shutdown
 
@@ -16,14 +17,7 @@ SHUTDOWN_LIMIT = 2.0  # s, wall; a master that hangs answers nobody
 def end_by_signals(stop: Callable[[], None]) -> None:
     """Make Ctrl-C and SIGTERM end the loop. If that has not begun, rospy may be waiting for a
     master that is gone, which only a shutdown ends; so that follows after LOOP_END."""
-    def end(_number: int, _frame: object) -> None:
-        stop()
-        last = threading.Timer(LOOP_END, shut_down)
-        last.daemon = True
-        last.start()
-
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, end)
+    at_signals(stop, LOOP_END, lambda _: shut_down(), (signal.SIGINT, signal.SIGTERM))
 
 
 def end_before_topics(stop: Callable[[], None]) -> threading.Event:

@@ -1,0 +1,46 @@
+"""How programs end at Ctrl-C, SIGTERM (roslaunch, kill) and SIGHUP (a closed terminal)."""
+
+from __future__ import annotations
+
+import contextlib
+import signal
+import threading
+from collections.abc import Callable, Iterator
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+@contextlib.contextmanager
+def interruptible() -> Iterator[None]:
+    """The first of these signals raises KeyboardInterrupt; later ones do not disturb the cleanup.
+
+    Used again within it, the inner block can be interrupted once more. For a program that does one
+    thing after another.
+    """
+
+    def interrupt(_number: int, _frame: object) -> None:
+        for number in SIGNALS:
+            signal.signal(number, signal.SIG_IGN)
+        raise KeyboardInterrupt
+
+    for number in SIGNALS:
+        signal.signal(number, interrupt)
+    yield
+
+
+def at_signals(ask: Callable[[], None], limit: float, force: Callable[[int], object],
+               numbers: tuple[int, ...] = SIGNALS) -> None:
+    """At each of these signals, call `ask`, and after `limit` s (wall) `force` with the exit code.
+
+    For a loop that must not be interrupted anywhere, with locks held: `ask` tells it to end soon.
+    It may be stuck, for example with a master that is gone: `force` runs on a thread of its own.
+    """
+
+    def end(number: int, _frame: object) -> None:
+        ask()
+        last = threading.Timer(limit, force, (128 + number,))
+        last.daemon = True
+        last.start()
+
+    for number in numbers:
+        signal.signal(number, end)

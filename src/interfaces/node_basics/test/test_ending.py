@@ -1,0 +1,68 @@
+"""Programs that get signals, each in a process of its own."""
+
+import signal
+import subprocess
+import sys
+
+import pytest
+
+LIMIT = 60  # s, wall; a busy machine starts a process slowly
+INTERRUPTED = """
+import time
+from node_basics.ending import interruptible
+try:
+    with interruptible():
+        print("ready", flush=True)
+        time.sleep(600)
+except KeyboardInterrupt:
+    print("cleanup", flush=True)
+    input()
+    print("clean", flush=True)
+"""
+ASKED = """
+import os, sys, threading, time
+from node_basics.ending import at_signals
+asked = threading.Event()
+at_signals(asked.set, float(sys.argv[1]), os._exit)
+print("ready", flush=True)
+while not asked.wait(0.05):
+    pass
+print("asked", flush=True)
+time.sleep(600 if sys.argv[1] == "0.1" else 0)
+"""
+SIGNALS = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+
+
+@pytest.fixture
+def start():
+    started = []
+
+    def begin(*command):
+        started.append(subprocess.Popen([sys.executable, "-c", *command], stdin=subprocess.PIPE,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
+        assert started[-1].stdout.readline() == "ready\n"
+        return started[-1]
+
+    yield begin
+    for process in started:
+        process.kill()
+        process.communicate()
+
+
+@SIGNALS
+def test_a_second_signal_does_not_disturb_the_cleanup(start, number):
+    process = start(INTERRUPTED)
+    process.send_signal(number)
+    assert process.stdout.readline() == "cleanup\n"
+    process.send_signal(number)
+    assert process.communicate("\n", LIMIT) == ("clean\n", "")
+    assert process.returncode == 0
+
+
+@SIGNALS
+@pytest.mark.parametrize("limit", ["60", "0.1"])
+def test_a_program_that_does_not_end_when_asked_is_ended(start, number, limit):
+    process = start(ASKED, limit)
+    process.send_signal(number)
+    assert process.communicate(timeout=LIMIT) == ("asked\n", "")
+    assert process.returncode == (128 + number if limit == "0.1" else 0)
