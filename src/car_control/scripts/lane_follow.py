@@ -14,8 +14,9 @@ from car_control.images import picture_of
 from car_control.lane.lane_driver import FOLLOWING, SEARCHING, STOPPED, LaneDriver
 from car_control.lane.line_finding import LaneSettings, find_line
 from car_control.node import Ending, read_settings, start_node
-from car_control.reconfigure import serve_settings
+from car_control.settings import checked
 from geometry_msgs.msg import Twist
+from node_basics.reconfigure import serve_settings
 from sensor_msgs.msg import Image
 
 CHECK_PERIOD = 0.1  # s
@@ -103,7 +104,7 @@ def main():
     start_node("lane_follow")
     ending = Ending()
     follow = LaneFollow(read_settings(LaneSettings, "lane_follow.yaml"))
-    serve_settings(follow.driver.settings, follow.change)
+    serve_settings(follow.driver.settings, checked, follow.change)
     ending.asked.wait()
     follow.stop()
     ending.done()

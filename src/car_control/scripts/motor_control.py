@@ -13,8 +13,9 @@ import rospy
 from ackermann_msgs.msg import AckermannDriveStamped
 from car_control.motor import DriveCommand, Motor, MotorSettings, controller_commands
 from car_control.node import Ending, read_settings, start_node
-from car_control.reconfigure import serve_settings
+from car_control.settings import checked
 from geometry_msgs.msg import Twist
+from node_basics.reconfigure import serve_settings
 from std_msgs.msg import Bool, Float64
 
 WAKE = 0.02  # s, wall: how often to check for a sender's end, whatever the clock does
@@ -122,7 +123,7 @@ def main():
     start_node("motor_control", anonymous=True)
     ending = Ending()
     control = MotorControl(read_settings(MotorSettings, "car_control.yaml", "motor_control"))
-    serve_settings(control.motor.settings, control.change)
+    serve_settings(control.motor.settings, checked, control.change)
     control.spin(ending)
     control.stop()
     ending.done()

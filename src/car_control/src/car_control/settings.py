@@ -16,7 +16,7 @@ import yaml
 Settings = TypeVar("Settings")
 
 
-class SettingsError(Exception):
+class SettingsError(ValueError):
     """One line that names the file (or parameters), the key, and the error."""
 
 
@@ -74,11 +74,6 @@ def checked(entry: Field, value: object, where: str) -> object:
             f"{where}: '{entry.name}' must be a number from {low:g} to {high:g}, not {given}"
         )
     return float(value)
-
-
-def changeable(kind: type) -> list[Field]:
-    """The fields that can change while a node runs: numbers and switches."""
-    return [entry for entry in fields(kind) if _type_name(entry) in ("float", "bool")]
 
 
 def _type_name(entry: Field) -> str:

@@ -13,7 +13,7 @@ import yaml
 Settings = TypeVar("Settings")
 
 
-class SettingsError(Exception):
+class SettingsError(ValueError):
     """One line with the file, the key, and the error."""
 
 

@@ -14,12 +14,12 @@ import reprlib
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import rospy
 import yaml
 from dynamic_reconfigure.server import Server
+from node_basics.reconfigure import Entry, EntryServer
 
 KINDS = {"bool": bool, "int": int, "double": float, "str": str, "list": list}
 
@@ -129,31 +129,9 @@ def serve_changes(table: list[Parameter], values: dict[str, Any],
             config[entry.name] = current[entry.name]
         return config
 
-    return _QuietServer(_describe(changeable, current), change, namespace)
-
-
-class _QuietServer(Server):
-    """Starts with the values that were read and checked, not with the parameter server's."""
-
-    def _copy_from_parameter_server(self) -> None:
-        """Does nothing: they were read already, and integers would get another type here."""
-
-
-def _describe(changeable: list[Parameter], values: dict[str, Any]) -> SimpleNamespace:
-    """What a class generated from a .cfg file would hold."""
-    parameters = [{"name": entry.name, "type": entry.type, "level": 1,
-                   "description": entry.meaning, "edit_method": "",
-                   "min": _bound(entry, entry.min), "max": _bound(entry, entry.max)}
-                  for entry in changeable]
-    return SimpleNamespace(
-        defaults={entry.name: values[entry.name] for entry in changeable},
-        min={p["name"]: p["min"] for p in parameters},
-        max={p["name"]: p["max"] for p in parameters},
-        level={p["name"]: p["level"] for p in parameters},
-        type={p["name"]: p["type"] for p in parameters},
-        all_level=1,
-        config_description={"name": "Default", "type": "", "state": True, "id": 0, "parent": 0,
-                            "parameters": parameters, "groups": []})
+    return EntryServer([Entry(entry.name, current[entry.name], _bound(entry, entry.min),
+                              _bound(entry, entry.max), entry.meaning) for entry in changeable],
+                       change, namespace)
 
 
 def _bound(entry: Parameter, bound: float) -> Any:

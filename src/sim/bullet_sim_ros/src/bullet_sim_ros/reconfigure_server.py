@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import rospy
-from dynamic_reconfigure.server import Server
+from node_basics.reconfigure import Entry, EntryServer
 
 from bullet_sim_ros.plugin_host import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins")
-
-KINDS = {float: "double", bool: "bool", int: "int", str: "str"}
 
 
 @dataclass(frozen=True)
@@ -60,7 +58,7 @@ def offer_changes(context: PluginContext, namespace: str, values: Mapping[str, V
     offer_values(context, namespace, values, changed)
 
 
-class ValueServer(Server):
+class ValueServer(EntryServer):
     """Calls `change(values)` at once, and in a ROS thread whenever somebody changes one."""
 
     def __init__(self, namespace: str, values: Mapping[str, Value],
@@ -70,13 +68,12 @@ class ValueServer(Server):
             return config
 
         try:
-            super().__init__(_Type(values), changed, namespace)
+            super().__init__([Entry(name, value.now, value.least, value.greatest,
+                                    value.description) for name, value in values.items()],
+                             changed, namespace)
         except rospy.ServiceException:
             self._close_topics()
             raise
-
-    def _copy_from_parameter_server(self) -> None:
-        """Not done: parameters were read already, and an integer would get another type here."""
 
     def close(self) -> None:
         """End topics and service."""
@@ -86,19 +83,3 @@ class ValueServer(Server):
     def _close_topics(self) -> None:
         self.descr_topic.unregister()
         self.update_topic.unregister()
-
-
-class _Type:
-    """The type description that dynamic_reconfigure's generator would have written."""
-
-    def __init__(self, values: Mapping[str, Value]):
-        self.defaults = {name: value.now for name, value in values.items()}
-        self.min = {name: value.least for name, value in values.items()}
-        self.max = {name: value.greatest for name, value in values.items()}
-        self.level = dict.fromkeys(values, 1)
-        self.config_description = {
-            "name": "Default", "type": "", "state": True, "id": 0, "parent": 0, "groups": [],
-            "parameters": [
-                {"name": name, "type": KINDS[type(value.now)], "default": value.now,
-                 "min": value.least, "max": value.greatest, "level": 1, "edit_method": "",
-                 "description": value.description} for name, value in values.items()]}
