@@ -20,6 +20,7 @@ from lane_keeping.world.scenery import (
 )
 from racecar_description.track.painted_plane import config_text, material_text
 from racecar_description.track.track_file import load_track_file
+from sdf import box, cylinder, document, painted_floor, sphere
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "src/lessons/lane_keeping"
@@ -39,7 +40,8 @@ def files() -> dict[str, bytes]:
     plane, texture = plane_of(track_file), draw_ground(track_file, crossings, scenery)
     texts = {
         f"models/{MODEL}/model.config": config_text(MODEL, _DESCRIPTION),
-        f"models/{MODEL}/model.sdf": _GROUND.replace("SIZE", f"{plane.width:g} {plane.height:g}"),
+        f"models/{MODEL}/model.sdf": document(
+            painted_floor(MODEL, MODEL, (plane.width, plane.height))),
         f"models/{MODEL}/materials/scripts/{MODEL}.material": material_text(MODEL),
         "worlds/lane.world": _world(plane, scenery, _people(crossings)),
         "worlds/lane_empty.world": _world(plane, scenery, []),
@@ -62,7 +64,7 @@ def _people(crossings: Crossings) -> list[str]:
 
 
 def _tree(number: int, tree: Tree) -> str:
-    crown, trunk = _ball(tree.crown), _cylinder(0.06, tree.height)
+    crown, trunk = sphere(tree.crown), cylinder(0.06, tree.height)
     return _static(f"tree_{number}", tree.x, tree.y, [
         ("trunk", f"0 0 {tree.height / 2:g}", trunk, BARK, True),
         ("crown", f"0 0 {tree.height:g}", crown, LEAVES, False)])
@@ -70,8 +72,8 @@ def _tree(number: int, tree: Tree) -> str:
 
 def _lamp(number: int, lamp: Lamp) -> str:
     return _static(f"lamp_{number}", lamp.x, lamp.y, [
-        ("pole", f"0 0 {lamp.height / 2:g}", _cylinder(0.035, lamp.height), METAL, True),
-        ("head", f"0 0 {lamp.height:g}", _ball(0.16), "0.95 0.95 0.8", False)])
+        ("pole", f"0 0 {lamp.height / 2:g}", cylinder(0.035, lamp.height), METAL, True),
+        ("head", f"0 0 {lamp.height:g}", sphere(0.16), "0.95 0.95 0.8", False)])
 
 
 def _person(number: int, zebra: Zebra, crossings: Crossings) -> str:
@@ -79,12 +81,12 @@ def _person(number: int, zebra: Zebra, crossings: Crossings) -> str:
     x, y, yaw = person_begin(zebra, crossings)
     shirt = CLOTHES[(number - 1) % len(CLOTHES)]
     visuals = "\n".join(_visual(*part) for part in (
-        ("left_leg", "0 0.06 0.2", _cylinder(0.05, 0.4), TROUSERS),
-        ("right_leg", "0 -0.06 0.2", _cylinder(0.05, 0.4), TROUSERS),
-        ("body", "0 0 0.55", _box(0.15, 0.24, 0.32), shirt),
-        ("head", "0 0 0.8", _ball(0.09), SKIN)))
+        ("left_leg", "0 0.06 0.2", cylinder(0.05, 0.4), TROUSERS),
+        ("right_leg", "0 -0.06 0.2", cylinder(0.05, 0.4), TROUSERS),
+        ("body", "0 0 0.55", box(0.15, 0.24, 0.32), shirt),
+        ("head", "0 0 0.8", sphere(0.09), SKIN)))
     collision = (f'<collision name="body"><pose>0 0 {PERSON_HEIGHT / 2} 0 0 0</pose>'
-                 f"<geometry>{_cylinder(PERSON_RADIUS, PERSON_HEIGHT - 0.02)}</geometry>"
+                 f"<geometry>{cylinder(PERSON_RADIUS, PERSON_HEIGHT - 0.02)}</geometry>"
                  "</collision>")
     name = f"pedestrian_{number}"
     return (_PERSON.replace("NAME", name).replace("POSE", f"{x:.4f} {y:.4f} 0 0 0 {yaw:.6f}")
@@ -110,45 +112,8 @@ def _visual(name: str, pose: str, shape: str, colour: str) -> str:
             "</visual>")
 
 
-def _cylinder(radius: float, length: float) -> str:
-    return f"<cylinder><radius>{radius:g}</radius><length>{length:g}</length></cylinder>"
-
-
-def _ball(radius: float) -> str:
-    return f"<sphere><radius>{radius:g}</radius></sphere>"
-
-
-def _box(x: float, y: float, z: float) -> str:
-    return f"<box><size>{x:g} {y:g} {z:g}</size></box>"
-
-
 _DESCRIPTION = """Lawn with a road in the shape of 凹, one lane, zebra crossings and shade.
 Written by tools/makers."""
-
-_GROUND = """<?xml version="1.0"?>
-<sdf version="1.4">
-  <model name="lane_track">
-    <static>true</static>
-    <link name="link">
-      <collision name="collision">
-        <geometry><plane><normal>0 0 1</normal><size>SIZE</size></plane></geometry>
-        <surface><friction><ode><mu>100</mu><mu2>50</mu2></ode></friction></surface>
-      </collision>
-      <visual name="visual">
-        <cast_shadows>false</cast_shadows>
-        <geometry><plane><normal>0 0 1</normal><size>SIZE</size></plane></geometry>
-        <material>
-          <script>
-            <uri>model://lane_track/materials/scripts</uri>
-            <uri>model://lane_track/materials/textures</uri>
-            <name>lane_track</name>
-          </script>
-        </material>
-      </visual>
-    </link>
-  </model>
-</sdf>
-"""
 
 _PERSON = """<model name="NAME">
 <pose>POSE</pose>

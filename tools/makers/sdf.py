@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from racecar_description.track.painted_plane import material_text
+
 Numbers = tuple[float, ...]
 ORIGIN: Numbers = (0.0, 0.0, 0.0)
 WHITE, GREY, DARK = (0.9, 0.9, 0.9), (0.6, 0.6, 0.6), (0.15, 0.15, 0.15)
@@ -18,20 +20,26 @@ MODEL_CONFIG = """<?xml version="1.0"?>
   <description>{description}</description>
 </model>
 """
-MATERIAL = """material {name}
-{{
-  technique
-  {{
-    pass
-    {{
-      texture_unit
-      {{
-        texture {name}.png
-      }}
-    }}
-  }}
-}}
-"""
+PAINTED_FLOOR = """  <model name="{name}">
+    <static>true</static>
+    <link name="{part}link">
+      <collision name="{part}collision">
+        <geometry><plane><normal>0 0 1</normal><size>{size}</size></plane></geometry>
+        <surface><friction><ode><mu>100</mu><mu2>50</mu2></ode></friction></surface>
+      </collision>
+      <visual name="{part}visual">
+        <cast_shadows>false</cast_shadows>
+        <geometry><plane><normal>0 0 1</normal><size>{size}</size></plane></geometry>
+        <material>
+          <script>
+            <uri>model://{folder}/materials/scripts</uri>
+            <uri>model://{folder}/materials/textures</uri>
+            <name>{name}</name>
+          </script>
+        </material>
+      </visual>
+    </link>
+  </model>"""
 DOCUMENT = '<?xml version="1.0"?>\n<sdf version="1.4">\n{body}\n</sdf>\n'
 
 
@@ -103,6 +111,15 @@ def model(name: str, links: Iterable[str], place: Numbers = ORIGIN, static: int 
     return f"{head}\n{body}\n  </model>"
 
 
+def painted_floor(name: str, folder: str, size: Numbers, part: str = "") -> str:
+    """A `<model>` that shows the texture NAME.png of a model folder; `size`: x and y, m.
+
+    `part` stands before the names of its link, collision and visual.
+    """
+    return PAINTED_FLOOR.format(name=name, folder=folder, part=part,
+                                size=" ".join(f"{side:g}" for side in size))
+
+
 def document(body: str) -> str:
     """A whole SDF file."""
     return DOCUMENT.format(body=body)
@@ -117,5 +134,5 @@ def model_files(folder: str, text: str, description: str) -> dict[str, bytes]:
 
 def material_files(folder: str, name: str, png: bytes) -> dict[str, bytes]:
     """The script and texture behind a part's `texture` and `material`."""
-    return {f"{folder}/materials/scripts/{name}.material": MATERIAL.format(name=name).encode(),
+    return {f"{folder}/materials/scripts/{name}.material": material_text(name).encode(),
             f"{folder}/materials/textures/{name}.png": png}

@@ -32,26 +32,6 @@ WAY_2020: tuple[Point, ...] = (
     (1.62, 1.747), (-0.45, 1.747), (-0.9, 1.25), (-1.72, 1.25), (-1.72, 0.0),
 )
 LANE_2020 = 0.3, 0.25  # m: radius of its bends, width
-COURSE_MODEL = """  <model name="course">
-    <static>true</static>
-    <link name="course_link">
-      <collision name="course_collision">
-        <geometry><plane><normal>0 0 1</normal><size>4 4</size></plane></geometry>
-        <surface><friction><ode><mu>100</mu><mu2>50</mu2></ode></friction></surface>
-      </collision>
-      <visual name="course_visual">
-        <cast_shadows>false</cast_shadows>
-        <geometry><plane><normal>0 0 1</normal><size>4 4</size></plane></geometry>
-        <material>
-          <script>
-            <uri>model://{folder}/materials/scripts</uri>
-            <uri>model://{folder}/materials/textures</uri>
-            <name>course</name>
-          </script>
-        </material>
-      </visual>
-    </link>
-  </model>"""
 SCENE = """  <scene>
     <ambient>0 0 0 1</ambient>
     <background>0.7 0.7 0.7 1</background>
@@ -214,7 +194,8 @@ def courses() -> dict[str, bytes]:
     files: dict[str, bytes] = {}
     for folder, canvas in (("turtlebot3_autorace/autorace_course", course_2017()),
                            ("turtlebot3_autorace_2020/course", course_2020())):
-        files |= sdf.model_files(folder, COURSE_MODEL.format(folder=folder),
+        floor = sdf.painted_floor("course", folder, (SIDE, SIDE), "course_")
+        files |= sdf.model_files(folder, floor,
                                  "A black floor of 4 x 4 m with the lanes of a race.")
         files |= sdf.material_files(folder, "course", canvas.png())
     return files
