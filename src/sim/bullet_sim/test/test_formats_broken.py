@@ -1,6 +1,6 @@
-"""Every file of formats_broken/ fails with the one line that its first comment expects.
+"""Every model of formats_broken.yaml fails with the one line that it expects.
 
-Those of formats_mended/ load, and give it as their one error line.
+Those of formats_mended.yaml load, and give it as their one error line.
 """
 
 import logging
@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pybullet_data
 import pytest
+import yaml
 
 from bullet_sim.errors import FormatError, SimulationError
 from bullet_sim.formats.loading import load_model
@@ -16,35 +17,23 @@ from bullet_sim.formats.resources import Resources
 FOREIGN = [file for file in Path(pybullet_data.getDataPath()).rglob("*.urdf")
            if "random_urdfs" not in file.parts]
 HERE = Path(__file__).parent
-BROKEN = sorted((HERE / "formats_broken").iterdir())
-MENDED = sorted((HERE / "formats_mended").iterdir())
+BROKEN, MENDED = (yaml.safe_load((HERE / name).read_text(encoding="utf-8"))
+                  for name in ("formats_broken.yaml", "formats_mended.yaml"))
 
 
-def expectation(text: str) -> str:
-    """What the first comment of a file says."""
-    return text.partition("\n")[0].removeprefix("<!-- expect: ").removesuffix(" -->")
-
-
-@pytest.mark.parametrize("file", BROKEN, ids=lambda file: file.name)
-def test_broken_model_says_what_is_wrong(file):
-    text = file.read_text()
-    expected = expectation(text)
+@pytest.mark.parametrize("name", BROKEN)
+def test_broken_model_says_what_is_wrong(name):
     with pytest.raises(FormatError) as raised:
-        load_model(text, Resources())
-    assert str(raised.value).endswith(expected)
+        load_model(BROKEN[name]["text"], Resources())
+    assert str(raised.value).endswith(BROKEN[name]["expect"])
     assert "\n" not in str(raised.value)
 
 
-@pytest.mark.parametrize("file", MENDED, ids=lambda file: file.name)
-def test_one_wrong_thing_is_one_error_line_and_the_rest_loads(file, caplog):
-    text = file.read_text()
-    assert load_model(text, Resources()).links
+@pytest.mark.parametrize("name", MENDED)
+def test_one_wrong_thing_is_one_error_line_and_the_rest_loads(name, caplog):
+    assert load_model(MENDED[name]["text"], Resources()).links
     said = [record.getMessage() for record in caplog.records if record.levelno == logging.ERROR]
-    assert said == [expectation(text)]
-
-
-def test_there_are_such_files():
-    assert len(BROKEN) > 20 and len(MENDED) > 30
+    assert said == [MENDED[name]["expect"]]
 
 
 def test_files_of_other_people_load_or_say_why_not():

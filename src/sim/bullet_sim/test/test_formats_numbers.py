@@ -1,6 +1,6 @@
 """Numbers at the edge of sense that still load, and texts that are no model at all.
 
-What is refused stands in formats_broken/.
+What is refused stands in formats_broken.yaml.
 """
 
 import math
