@@ -1,6 +1,8 @@
-"""Keys held, told from the events of a window and from the characters of a terminal."""
+"""Keys held, told from a window's events and a terminal's characters; `xset r off` is there."""
 
 import math
+import os
+import subprocess
 
 import pytest
 from car_control.key_terminal import keys_in
@@ -97,3 +99,11 @@ def test_standing_is_said_at_once_for_a_moment_and_no_more():
     times = sent(pace, (0.0, 0.0), [0.05 + i * 0.02 for i in range(200)])
     assert times[0] == 0.05 and 3 <= len(times) <= 5 and times[-1] <= 0.05 + Pace.FAREWELL
     assert pace.due((0.0, 0.1), 9.0)
+
+
+def test_xset_is_there_and_says_that_it_has_no_screen():
+    nowhere = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
+    ended = subprocess.run(["xset", "r", "off"], env=nowhere, capture_output=True, text=True,
+                           timeout=60, check=False)
+    assert (ended.returncode, ended.stdout) == (1, "")
+    assert "unable to open display" in ended.stderr

@@ -1,10 +1,12 @@
-"""Packages that robots' package.xml and CMakeLists.txt name: rospack and catkin find them."""
+"""Packages and nodes that robots of older releases name: rospack and catkin find them."""
 
 import os
+import subprocess
 from pathlib import Path
 
 import pytest
 import rospkg
+from roslib.packages import find_node
 
 NAMES = (
     "gazebo_ros", "gazebo_msgs", "gazebo_plugins", "gazebo_ros_control", "gazebo_dev",
@@ -36,3 +38,13 @@ def test_a_robots_package_can_depend_on_it(name):
     prefixes = os.environ["CMAKE_PREFIX_PATH"].split(os.pathsep)
     assert any((Path(prefix) / "share" / name / "cmake" / f"{name}Config.cmake").is_file()
                for prefix in prefixes)
+
+
+@pytest.mark.parametrize("name", ["state_publisher", "robot_state_publisher"])
+def test_robot_state_publisher_starts_by_both_its_names(name):
+    (node,) = find_node("robot_state_publisher", name)
+    nowhere = {**os.environ, "ROS_MASTER_URI": "no address"}
+    ended = subprocess.run([node], env=nowhere, capture_output=True, text=True, timeout=60,
+                           check=False)
+    assert "master URI [no address]" in ended.stderr  # it is roscpp that complains
+    assert ("deprecated" in ended.stderr) == (name == "state_publisher")

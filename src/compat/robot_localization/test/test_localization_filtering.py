@@ -1,9 +1,10 @@
-"""Estimates whose right answer is known."""
+"""Estimates whose right answer is known, poses relative to the first, and wrong parameters."""
 
 import math
 
 import numpy as np
 import pytest
+import rospy
 from robot_localization.filtering.ekf import (
     SIZE,
     Ekf,
@@ -25,6 +26,8 @@ from robot_localization.filtering.measurements import (
     velocity_between,
     without_gravity,
 )
+from robot_localization.settings import frame, number
+from robot_localization.sources import Source
 
 ANGLES = (0.3, -0.4, 2.0)
 VX, YAW, YAW_RATE = 6, 5, 11
@@ -205,3 +208,36 @@ def test_noise_as_matrix_or_diagonal():
     assert square(np.eye(15).ravel().tolist(), "q") == pytest.approx(np.eye(15))
     with pytest.raises(BadConfig, match=r"q has to be .* it has 3"):
         square([1, 2, 3], "q")
+
+
+@pytest.fixture
+def source():
+    made = Source.__new__(Source)
+    made.differential, made.relative, made.first = False, True, None
+    made.rejections = {"pose": np.inf}
+    return made
+
+
+def at(x):
+    return pose_matrix([x, 0, 0], np.eye(3))
+
+
+def test_what_follows_is_relative_to_the_first_that_is_a_pose(source):
+    found = [source.placed(float(time), at(x), np.eye(6), np.ones(6, dtype=bool))
+             for time, x in enumerate([np.nan, 5.0, 7.0])]
+    assert found[0] is None
+    assert [each.values[0] for each in found[1:]] == pytest.approx([0.0, 2.0])
+
+
+@pytest.mark.parametrize("value", ["x", [1.0], {}])
+def test_what_is_no_number_is_named(monkeypatch, value):
+    monkeypatch.setattr(rospy, "get_param", lambda *_: value)
+    with pytest.raises(BadConfig, match=r"^frequency is .*; it has to be a number$"):
+        number("frequency", 30.0)
+
+
+def test_numbers_and_frames(monkeypatch):
+    monkeypatch.setattr(rospy, "get_param", lambda *_: 20)
+    assert number("frequency", 30.0) == 20.0 and frame("map_frame", "map") == "20"
+    monkeypatch.setattr(rospy, "get_param", lambda *_: "/map")
+    assert frame("map_frame", "map") == "map"

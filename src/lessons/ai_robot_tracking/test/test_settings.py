@@ -1,10 +1,13 @@
-"""The parameter file: what is wrong with it is one line that names file and key."""
+"""The parameter file, whose mistakes are one line, and a node's own parameters."""
 
+import sys
 from dataclasses import fields
 from pathlib import Path
+from unittest.mock import MagicMock, call
 
 import pytest
 import yaml
+from ai_robot_tracking import parameters
 from ai_robot_tracking.follower import FollowerSettings
 from ai_robot_tracking.settings import SettingsError, load_settings
 from visual_tracker import PageSettings
@@ -72,3 +75,20 @@ def test_no_table(tmp_path, text):
         load_settings(FollowerSettings, path, "visual_tracker_pid", {})
     with pytest.raises(SettingsError, match=r"none\.yaml"):
         load_settings(FollowerSettings, tmp_path / "none.yaml", "visual_tracker_pid", {})
+
+
+def test_one_value_in_place_of_all_parameters_is_refused(monkeypatch):
+    rospy = MagicMock()
+    rospy.get_param.return_value, rospy.get_name.return_value = 3, "/visual_tracker"
+    monkeypatch.setattr(parameters, "rospy", rospy)
+    with pytest.raises(SettingsError, match="rosparam delete /visual_tracker"):
+        parameters.own_parameters()
+
+
+def test_what_the_command_line_gave_does_not_stay_for_the_next_run(monkeypatch):
+    rospy = MagicMock()
+    rospy.get_param.return_value = {"kp_turn": 3.0, "config": "mine.yaml"}
+    monkeypatch.setattr(parameters, "rospy", rospy)
+    monkeypatch.setattr(sys, "argv", ["visual_tracker_pid.py", "_kp_turn:=3.0", "image:=/camera"])
+    assert parameters.own_parameters() == {"kp_turn": 3.0, "config": "mine.yaml"}
+    assert rospy.delete_param.call_args_list == [call("~kp_turn")]

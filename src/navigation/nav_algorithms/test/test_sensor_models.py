@@ -1,4 +1,4 @@
-"""The laser's models against their own formulas, at places whose distances are known."""
+"""The laser's models against their own formulas, and the field of distances that they use."""
 
 from dataclasses import replace
 
@@ -7,6 +7,7 @@ import pytest
 from defaults import of
 from house import robust
 
+from nav_algorithms import likelihood_field
 from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.sensor_models import (
     BEAM,
@@ -143,3 +144,21 @@ def test_beams_that_few_particles_explain_are_skipped_once_converged():
     crowd[:4, 0] = 1.725  # 4 of 10 explain the third beam, and no longer the first two
     assert logs(FIELD_PROB, converged=True, beam_skip_threshold=0.45,
                 **scan).logs[-1] == pytest.approx(2 * np.log(p_of(0)))
+
+
+@pytest.mark.parametrize("seed, share", [(0, 0.01), (1, 0.1), (2, 0.5), (3, 0.002)])
+def test_distances_are_those_of_the_nearest_occupied_cell(seed, share):
+    occupied = (np.random.default_rng(seed).random((37, 61)) < share).astype(np.uint8)
+    occupied[5, 7] = 1
+    cells = np.argwhere(np.ones_like(occupied))
+    walls = np.argwhere(occupied)
+    nearest = np.sqrt(((cells[:, None] - walls[None]) ** 2).sum(-1).min(1)).reshape(37, 61)
+    assert likelihood_field.distances(occupied) == pytest.approx(nearest, abs=1e-12)
+
+
+def test_nothing_occupied_is_infinitely_far():
+    assert np.isinf(likelihood_field.distances(np.zeros((4, 3), np.uint8))).all()
+
+
+def test_one_cell():
+    assert likelihood_field.distances(np.ones((1, 1), np.uint8)).tolist() == [[0.0]]

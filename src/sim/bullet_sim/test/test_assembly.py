@@ -7,7 +7,6 @@ import pytest
 from bullet_sim.formats.loading import load_model
 from bullet_sim.formats.resources import Resources
 from bullet_sim.physics.assembly import assemble
-from bullet_sim.world import World
 
 GRAVITY = 9.8
 ROD = """<inertial><mass>1</mass><inertia><ixx>0.08333333</ixx><iyy>0.08333333</iyy>
@@ -26,13 +25,6 @@ def links(names: str) -> str:
 def joint(name: str, parent: str, child: str, kind: str = "revolute", more: str = "") -> str:
     return (f'<joint name="{name}" type="{kind}"><parent>{parent}</parent><child>{child}</child>'
             f"{more}</joint>")
-
-
-@pytest.fixture
-def world():
-    made = World()
-    yield made
-    made.close()
 
 
 def carried(tree) -> dict[str, str | None]:

@@ -25,7 +25,6 @@ from bullet_sim.description import (
 )
 from bullet_sim.errors import FormatError
 from bullet_sim.pose import Pose
-from bullet_sim.rendering.egl import EglRenderer
 from bullet_sim.sensors.camera import Camera
 from bullet_sim.sensors.image_effects import Distortion
 from bullet_sim.world import World
@@ -43,13 +42,6 @@ RADIUS = {  # of a point at an angle, over the radius of the picture's edge
     (2.0, 2.0, "sin"): lambda a, edge: math.sin(a / 2) / math.sin(edge / 2),
     (1.0, 1.0, "sin"): lambda a, edge: math.sin(a) / math.sin(edge),
 }
-
-
-@pytest.fixture(scope="module")
-def renderer():
-    opened = EglRenderer()
-    yield opened
-    opened.close()
 
 
 def camera(renderer, description, *visuals, scene=BLACK, kind="camera", **options):

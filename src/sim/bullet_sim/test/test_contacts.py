@@ -51,13 +51,6 @@ def friction(mu: float, mu2: float | None = None, fdir1: str = "0 0 0") -> str:
             f"<fdir1>{fdir1}</fdir1></ode></friction>")
 
 
-@pytest.fixture
-def world():
-    made = World()
-    yield made
-    made.close()
-
-
 def run(world: World, seconds: float) -> None:
     world.step(round(seconds / world.timestep))
 

@@ -40,13 +40,6 @@ def star(*kinds: str):
     return read(f'<model name="m"><link name="hub"/>{arms}</model>')
 
 
-@pytest.fixture
-def world():
-    made = World()
-    yield made
-    made.close()
-
-
 def engine_bodies(world: World) -> int:
     return world._client.read(pybullet.getNumBodies)
 

@@ -40,13 +40,6 @@ def read(body: str, version: str = "1.6"):
     return load_model(text, Resources())
 
 
-@pytest.fixture
-def world():
-    made = World()
-    yield made
-    made.close()
-
-
 def run(world: World, seconds: float) -> None:
     world.step(round(seconds / world.timestep))
 

@@ -79,13 +79,6 @@ def run(world: World, seconds: float) -> None:
         world.step()
 
 
-@pytest.fixture
-def world():
-    made = World()
-    yield made
-    made.close()
-
-
 def test_free_fall_follows_the_law(world):
     model = world.spawn(box(), Pose((1.0, 2.0, 10.0)))
     run(world, 1.0)

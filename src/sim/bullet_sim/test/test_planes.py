@@ -13,7 +13,6 @@ from bullet_sim.description import (
     Surface,
 )
 from bullet_sim.pose import Pose
-from bullet_sim.world import World
 
 UP = (0.0, 0.0, 1.0)
 
@@ -29,13 +28,6 @@ def box():
     link = LinkDescription("l", inertial=Inertial(mass=0.6, inertia=inertia),
                            collisions=(Collision("c", Box((0.1, 0.1, 0.1))),))
     return ModelDescription("box", links=(link,))
-
-
-@pytest.fixture
-def world():
-    made = World()
-    yield made
-    made.close()
 
 
 def touched(world):

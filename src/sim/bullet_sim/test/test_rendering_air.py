@@ -9,20 +9,12 @@ import pytest
 
 from bullet_sim.description import Fog, Material, Plane, SceneDescription, Visual
 from bullet_sim.pose import Pose
-from bullet_sim.rendering.egl import EglRenderer
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.scene import Scene
 from bullet_sim.rendering.sky import HORIZON, ZENITH
 
 BLACK = Material(diffuse=(0.0, 0.0, 0.0, 1.0), lighting=False)
 RED, BLUE = (255, 0, 0), (0, 0, 255)
-
-
-@pytest.fixture(scope="module")
-def renderer():
-    opened = EglRenderer()
-    yield opened
-    opened.close()
 
 
 def wall(distance, material=BLACK, size=200.0):

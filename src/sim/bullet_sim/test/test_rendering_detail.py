@@ -21,13 +21,6 @@ DARK = SceneDescription(ambient=(0.2, 0.2, 0.2, 1.0), background=(0.0, 0.0, 0.0,
 
 
 @pytest.fixture(scope="module")
-def renderer():
-    opened = EglRenderer()
-    yield opened
-    opened.close()
-
-
-@pytest.fixture(scope="module")
 def scene(tmp_path_factory):
     """A ball at the origin."""
     file = tmp_path_factory.mktemp("meshes") / "ball.stl"

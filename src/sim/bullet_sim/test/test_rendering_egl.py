@@ -34,13 +34,6 @@ LAMP = Material(diffuse=(1.0, 1.0, 1.0, 1.0), lighting=False)
 DOWN = (0.5, -0.5, -0.5, -0.5)
 
 
-@pytest.fixture(scope="module")
-def renderer():
-    opened = EglRenderer()
-    yield opened
-    opened.close()
-
-
 def sun(direction=(0.0, 0.0, -1.0), level=0.8, **kwargs):
     return LightDescription(
         "sun", type="directional", diffuse=(level, level, level, 1.0), direction=direction, **kwargs

@@ -33,13 +33,6 @@ GLOSSY = Material(specular=(0.1, 0.1, 0.1, 1.0), shininess=9.0)  # lit per pixel
 BOX = ("box", "link")
 
 
-@pytest.fixture(scope="module")
-def renderer():
-    opened = EglRenderer()
-    yield opened
-    opened.close()
-
-
 def sun(direction=(0.5, 0.2, -1.0), name="sun", level=1.0, **kwargs):
     given = {"specular": (0.0, 0.0, 0.0, 1.0), "cast_shadows": True} | kwargs
     return LightDescription(name, "directional", diffuse=(level, level, level, 1.0),

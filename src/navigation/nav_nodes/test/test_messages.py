@@ -1,16 +1,26 @@
-"""Maps as messages: the quick way of packing them gives the usual bytes."""
+"""Maps and quaternions as messages: the quick way of packing a map gives the usual bytes."""
 
+import math
 import time
 from io import BytesIO
 
 import numpy as np
 import pytest
 import rospy
+from geometry_msgs.msg import Quaternion
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.srv import GetMapResponse, LoadMapResponse
 
 from nav_algorithms.grid import OccupancyGrid
-from nav_nodes.messages import LoadedMapAnswer, MapAnswer, grid_message, grid_of
+from nav_nodes.messages import (
+    LoadedMapAnswer,
+    MapAnswer,
+    grid_message,
+    grid_of,
+    is_valid,
+    quaternion_of,
+    yaw_of,
+)
 
 GRID = OccupancyGrid(np.random.default_rng(0).integers(-1, 101, (7, 5)).astype(np.int8), 0.25,
                      (-1.5, 2.0))
@@ -55,3 +65,21 @@ def test_there_and_back():
     assert np.array_equal(grid.cells, GRID.cells)
     assert (grid.resolution, grid.origin) == (GRID.resolution, GRID.origin)
     assert (received.header.frame_id, received.info.map_load_time) == ("map", rospy.Time(3, 4))
+
+
+HUGE = 1e308  # its square is beyond float64
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1.0, -3.0])
+@pytest.mark.parametrize("length", [1.0, 1e-3, 1e3])
+def test_a_turn_about_z_of_any_length(yaw, length):
+    q = quaternion_of(yaw)
+    q.z, q.w = q.z * length, q.w * length
+    assert is_valid(q) and yaw_of(q) == pytest.approx(yaw)
+
+
+@pytest.mark.parametrize("q", [
+    (0, 0, 0, 0), (math.nan, 0, 0, 1), (0, 0, math.inf, 1), (1, 0, 0, 1), (0, 0, HUGE, HUGE)])
+def test_what_is_no_turn_about_z_is_no_error(q):
+    assert not is_valid(Quaternion(*q))
+    yaw_of(Quaternion(*q))

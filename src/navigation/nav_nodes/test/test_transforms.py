@@ -1,12 +1,14 @@
-"""Who misses one and the same transform in two ways gets one story, by a buffer without topics."""
+"""Which missing transform is to blame, in one story, by a tf2 buffer without topics."""
 
 import threading
 
 import pytest
 import rospy
+import tf2_py
 import tf2_ros
 from geometry_msgs.msg import TransformStamped
 
+from nav_nodes.tf_gaps import TfLink, known_links, weakest
 from nav_nodes.transforms import Transforms
 
 LATE = 2.0  # s by which the odometry's transforms come after their stamps
@@ -71,3 +73,46 @@ def test_a_stamp_of_another_age_is_not_asked_of_tf_which_would_abort(late):
     assert late.pose("odom", "base", rospy.Time(2**32 - 1)) is None
     assert late.find("odom", "laser", rospy.Time(2**32 - 1)) is None
     assert late._missing_data.missed
+
+
+CHAIN = ("map", "odom", "base")
+
+
+def links(*known):
+    """Of (parent, child, newest stamp, s; 0: static)."""
+    buffer = tf2_py.BufferCore(rospy.Duration(30))
+    for parent, child, newest in known:
+        message = TransformStamped(child_frame_id=child)
+        message.header.frame_id, message.header.stamp = parent, rospy.Time.from_sec(newest)
+        message.transform.rotation.w = 1.0
+        (buffer.set_transform if newest else buffer.set_transform_static)(message, "test")
+    return known_links(buffer)
+
+
+@pytest.mark.parametrize("known, asked, blamed", [
+    ([], ("map", "base"), ("odom", "base")),
+    ([], ("odom", "base"), ("odom", "base")),
+    ([], ("base", "laser"), ("base", "laser")),
+    ([("map", "odom", 5)], ("map", "base"), ("odom", "base")),
+    ([("odom", "base", 5)], ("map", "base"), ("map", "odom")),
+    ([("odom", "base", 5)], ("map", "laser"), ("base", "laser")),
+    ([("base", "mast", 0)], ("base", "laser"), ("base", "laser")),
+    ([("mast", "laser", 0)], ("base", "laser"), ("base", "mast")),
+    ([("chassis", "base", 0)], ("map", "base"), ("odom", "chassis")),
+    ([("chassis", "base", 0)], ("odom", "base"), ("odom", "chassis")),
+    ([("map", "odom", 5), ("odom", "bass", 5), ("bass", "laser", 0)], ("base", "laser"),
+     ("odom", "base")),
+    ([("odom", "bass", 5), ("bass", "laser", 0)], ("base", "laser"), ("odom", "base"))])
+def test_what_never_came(known, asked, blamed):
+    assert weakest(links(*known), *asked, CHAIN) == TfLink(*blamed, None)
+
+
+@pytest.mark.parametrize("known, asked, blamed", [
+    ([("map", "odom", 7), ("odom", "base", 5)], ("map", "base"), TfLink("odom", "base", 5.0)),
+    ([("map", "odom", 5), ("odom", "base", 7)], ("map", "base"), TfLink("map", "odom", 5.0)),
+    ([("map", "odom", 5), ("odom", "base", 5.2)], ("map", "base"), TfLink("odom", "base", 5.2)),
+    ([("odom", "base", 5), ("base", "laser", 0)], ("odom", "laser"), TfLink("odom", "base", 5.0)),
+    ([("odom", "base", 5), ("base", "laser", 0)], ("laser", "odom"), TfLink("odom", "base", 5.0)),
+    ([("base", "laser", 0)], ("base", "laser"), TfLink("base", "laser", 0.0))])
+def test_the_oldest_of_what_came(known, asked, blamed):
+    assert weakest(links(*known), *asked, CHAIN) == blamed
