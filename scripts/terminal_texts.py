@@ -38,6 +38,7 @@ WORD = re.compile(r"(?<![\w/.-])[A-Za-z]?[a-z']+(?![\w/-]|\.[a-z])")
 DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 FORMAT = re.compile(r"%(?:\(\w+\))?[-+0]*[0-9]*(?:\.[0-9]+)?[sdrfgix]|\{[^{} ]*\}")
 PLACE = re.compile(r"\{\d+\}")
+CONTEXT = "\4"  # gettext's, between a msgctxt and its msgid
 # Of Python's argparse, which has no Chinese.
 OF_ARGPARSE = (
     "usage: {0}", "positional arguments:", "options:", "show this help message and exit",
@@ -57,6 +58,14 @@ OF_SHELL = (
     "{0} {1} is in C++ and not built yet; type: make -C {2} build CPP=1")
 ABSENT = "src/workspace_needs/data/absent.yaml"
 CHECK = "src/workspace_needs/src/workspace_needs/check/findings.py"
+# Headings of the tables that evaluation and marking print (terminal_language.heading).
+OF_TABLES = (
+    "  follower", "laps", "lap s", "RMS cm", "max cm", "sent", "dropped", "real time", "outcome",
+    "goal", "reached", "straight s", "shortest s", "off cm", "off °", " points", "student",
+    "halls", "contact", "mean time, s", "slowest, s", "nearest, m",
+    "mission", "passed", "after s", "contacts", "why not")
+# Of lists that a file's faults stand in, whose frame has one word.
+OF_LISTS = ("line {0}: {1}",)
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works")  # its words
 
 
@@ -64,9 +73,12 @@ def texts_of(source: str) -> Iterator[str]:
     """The texts in a Python source that may reach a terminal, a line each.
 
     What is printed, logged or raised there counts if it has a word and a space; every other string
-    if it has three words, since it may be returned to who does so. Docstrings are none.
+    if it has three words, since it may be returned to who does so. Docstrings are none, unless
+    argparse's description is the file's.
     """
     tree = ast.parse(source)
+    if _shows_docstring(tree):
+        yield " ".join(ast.get_docstring(tree).split())
     docstrings = {id(node.body[0].value) for node in ast.walk(tree)
                   if isinstance(node, DOCUMENTED)
                   and node.body and isinstance(node.body[0], ast.Expr)}
@@ -78,6 +90,12 @@ def texts_of(source: str) -> Iterator[str]:
                 yield line.strip()
 
 
+def _shows_docstring(tree: ast.Module) -> bool:
+    return any(isinstance(node, ast.keyword) and node.arg == "description"
+               and isinstance(node.value, ast.Name) and node.value.id == "__doc__"
+               for node in ast.walk(tree))
+
+
 def is_door(node: ast.AST) -> bool:
     """Whether a statement or call shows its texts to somebody."""
     if isinstance(node, ast.Raise):
@@ -86,7 +104,8 @@ def is_door(node: ast.AST) -> bool:
         return node.arg in ("help", "description", "epilog")
     called = node.func if isinstance(node, ast.Call) else None
     name = getattr(called, "attr", getattr(called, "id", ""))
-    return name.startswith("log") or name in ("print", "exit", "error", "info", "warning", "input")
+    return name.startswith("log") or name in (
+        "print", "exit", "error", "info", "warning", "input", "say", "status")
 
 
 def _strings(node: ast.AST) -> Iterator[ast.expr]:
@@ -139,7 +158,7 @@ def is_text(text: str) -> bool:
 
 NO_TEXT = re.compile(
     r"^<[!?/]|^(\{\d+\} *)?<\w+( name=\{0\})?( [\w:]+=\"|>?$|>[^,]*</)"
-    r"|[\\|^]|\w\[\w|^import |^# |^/|^~")
+    r"|[\\^]|\|(?! )|(?<! )\||\w\[\w|^import |^# |^/|^~")
 
 
 def python_texts() -> dict[str, list[str]]:
@@ -147,6 +166,8 @@ def python_texts() -> dict[str, list[str]]:
     found: dict[str, list[str]] = {text: ["Python's argparse"] for text in OF_ARGPARSE}
     found |= {text: ["the system"] for text in OF_SYSTEM}
     found |= {text: [CHECK] for text in OF_CHECK}
+    found |= {f"column{CONTEXT}{word}": ["tables"] for word in OF_TABLES}
+    found |= {text: ["lists-of-faults"] for text in OF_LISTS}
     found |= {text: ["rosed-and-rosrun"] for text in OF_SHELL}
     found |= {text: [ABSENT] for text in absences()}
     listed = subprocess.run(
@@ -206,8 +227,13 @@ def template(found: dict[str, list[str]]) -> str:
     head = 'msgid ""\nmsgstr "Content-Type: text/plain; charset=UTF-8\\n"\n'
     return head + "".join(
         f'\n#: {" ".join(name.replace(" ", "-") for name in files)}\n'
-        f'msgid "{quoted(text)}"\nmsgstr ""\n'
+        f'{_context(text)}msgid "{quoted(text.split(CONTEXT)[-1])}"\nmsgstr ""\n'
         for text, files in sorted(found.items(), key=lambda each: (each[1][0], each[0])))
+
+
+def _context(text: str) -> str:
+    context = text.split(CONTEXT)[:-1]
+    return f'msgctxt "{context[0]}"\n' if context else ""
 
 
 def merge(domain: str, found: dict[str, list[str]]) -> None:

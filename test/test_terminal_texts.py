@@ -65,6 +65,18 @@ def f(a):
         "the wrong value here", "the first words: {0}"}
 
 
+@pytest.mark.parametrize("shown, texts", [
+    ("argparse.ArgumentParser(description=__doc__)", {"What it does, in two lines."}),
+    ("argparse.ArgumentParser(description=own)", set()),
+    ("progress.say('files: %s' % x)", {"files: {0}"}),
+    ("progress.status(f'waiting for {x}')", {"waiting for {0}"}),
+    ("f'at {x} s | lap {y} | off line {z}'", {"at {0} s | lap {1} | off line {2}"}),
+    ("'one or|two and some'", set())])
+def test_texts_of_descriptions_and_progress_lines(shown: str, texts: set[str]) -> None:
+    source = f'"""What it does,\nin two lines.\n"""\n{shown}\n'
+    assert set(terminal_texts.texts_of(source)) == texts
+
+
 def said(command: list[str], **environment: str) -> str:
     base = {name: value for name, value in os.environ.items() if name not in (
         "LANG", "LANGUAGE", "LC_ALL", "LC_MESSAGES", "MAKELEVEL", "MAKEFLAGS", "MFLAGS")}

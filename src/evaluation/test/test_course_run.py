@@ -13,9 +13,10 @@ from pathlib import Path
 
 import cv2
 import pytest
+from terminal_language.cells import width
 
 from evaluation.command_line import NOT_RUN
-from evaluation.course_run import CourseRun
+from evaluation.course_run import CourseRun, followers_table
 from evaluation.live import run_program_of
 
 pytestmark = pytest.mark.processes
@@ -360,3 +361,17 @@ def test_a_mistyped_command_is_one_line_and_2(tmp_path, capsys, arguments, words
     assert run_program_of(CourseRun, [*arguments, "--out", str(tmp_path)]) == NOT_RUN
     (line,) = capsys.readouterr().err.splitlines()
     assert words in line
+
+
+def test_the_table_follows_the_locale(monkeypatch):
+    monkeypatch.setenv("LC_ALL", "C.UTF-8")
+    run = {"laps_closed": 2, "distance_m": 28.4, "outcome": "time is up"}
+    monkeypatch.setenv("LANGUAGE", "en")
+    english = followers_table({"a.py": run}, "a.py").split("\n")
+    monkeypatch.setenv("LANGUAGE", "zh_CN")
+    chinese = followers_table({"a.py": run}, "a.py").split("\n")
+    assert english[0].split("  ")[1] == "follower" and english[1].endswith("  time is up")
+    assert chinese[0].split() == "程序 圈数 每圈 s m RMS cm 最大 cm 帧数 丢帧 实时倍数 结果".split()
+    assert chinese[1].endswith("  时间到")
+    at = [line.index(word) for line, word in zip(chinese, ("结果", "时间到"), strict=True)]
+    assert width(chinese[0][:at[0]]) == width(chinese[1][:at[1]])

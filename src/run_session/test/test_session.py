@@ -1,6 +1,7 @@
 """A session ends what it has started, and half a drive is none."""
 
 import errno
+import io
 import os
 import signal
 import threading
@@ -11,7 +12,7 @@ import psutil
 import pytest
 
 from run_session.failure import RunError
-from run_session.session import Session
+from run_session.session import Session, StatusLine
 
 pytestmark = pytest.mark.processes
 # As course_run: told to end, it reports what it has seen.
@@ -99,3 +100,13 @@ def test_a_ctrl_c_while_processes_end_leaves_none(tmp_path, type_ctrl_c):
     with pytest.raises(KeyboardInterrupt), session:
         type_ctrl_c()
     assert child.process.poll() is not None
+
+
+def test_a_progress_line_is_in_the_terminal_s_language_and_fits(monkeypatch):
+    monkeypatch.setenv("LC_ALL", "C.UTF-8")
+    monkeypatch.setenv("LANGUAGE", "zh_CN")
+    monkeypatch.setenv("COLUMNS", "12")
+    screen = io.StringIO()
+    screen.isatty = lambda: True
+    StatusLine(screen).status("waiting for the simulator (service /gazebo/get_world_properties)")
+    assert screen.getvalue() == "\r正在等待仿\x1b[K"

@@ -8,7 +8,9 @@ import sys
 import time
 
 import pytest
+from terminal_language import heading, translated
 from terminal_language.catalogue import Catalogue, Sentence, read_catalogue
+from terminal_language.cells import cut, width
 from terminal_language.streams import TranslatedStream
 from terminal_language.wanted import home, is_ours, wanted_language
 
@@ -58,7 +60,7 @@ def test_only_our_programs_are_translated(words, ours):
     ("the line is lost\nx\n  no such file\n", "线丢了\nx\n  没有这个文件\n"),
     ("[gzclient] the line is lost", "[gzclient] 线丢了"),
     ("no x here (did you mean y?); no such file", "没有 x（是不是 y？）; 没有这个文件"),
-    ("arm has no no such file", "arm 没有没有这个文件"), ("线 has no 3", "线 没有 3"),
+    ("arm has no no such file", "arm 没有没有这个文件"), ("线 has no 3", "线没有 3"),
     ("no such file (3)", "没有这个文件 (3)"),
     ("Error: no x here", "Error: no x here"), ('  <link name="no such file"/>\n',) * 2,
     ("not translated yet", "not translated yet"), ("", ""), ("\n", "\n"), ("what?", "what?")])
@@ -71,11 +73,32 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
      "rosdep: compressed_image_transport: Debian 13 有，Debian 12 没有"),
     ("rosdep: rosserial (for x): not in Debian; the simulator's sensors publish what a driver "
      "would", "rosdep: rosserial (for x): Debian 里没有；驱动该发布的消息，由仿真器的传感器发布"),
+    ("a.world, line 1: write no -- within a comment; line 2: move <?xml ...?> to the beginning; "
+     'line 3: write a="..." with quotes; line 4: write b="..." with quotes; line 5: write c="..." '
+     "with quotes; line 6: remove what follows the root element; taken all the same, as by Gazebo",
+     "a.world，第 1 行：注释里不要写 --; 第 2 行：请把 <?xml ...?> 移到最开头; "
+     '第 3 行：请加引号写成 a="..."; 第 4 行：请加引号写成 b="..."; 第 5 行：请加引号写成 c="..."; '
+     "第 6 行：请去掉根元素后面的内容；和 Gazebo 一样照样读取"),
     ("gz: Unable to find file 'a.sdf'", "gz: 找不到文件 'a.sdf'"),
     ("check: x: no such file or package (did you mean y?); try `rospack list`, or give a path",
      "check: x: 没有这个文件或包（是不是 y？）；试试 `rospack list`，或给出路径")])
 def test_the_shipped_catalogue_has(english, chinese):
     assert read_catalogue("zh_CN").translate(english) == chinese
+
+
+def test_a_heading_is_translated_as_one_alone(monkeypatch):
+    monkeypatch.setenv("LC_ALL", "C.UTF-8")
+    monkeypatch.setenv("LANGUAGE", "zh_CN")
+    assert (heading("laps"), heading("m"), translated("laps")) == ("圈数", "m", "laps")
+    monkeypatch.setenv("LANGUAGE", "en")
+    assert heading("laps") == "laps"
+
+
+@pytest.mark.parametrize(("text", "cells", "kept"), [
+    ("lap 1", 5, "lap 1"), ("lap 1", 4, "lap "), ("圈数 1", 6, "圈数 1"), ("圈数 1", 3, "圈"),
+    ("圈数", 0, "")])
+def test_chinese_takes_two_cells(text, cells, kept):
+    assert cut(text, cells) == kept and width(kept) <= cells
 
 
 def test_data_with_many_colons_are_written_as_they_are():

@@ -75,7 +75,7 @@ def write_report(folder: Path, follower: str, run: dict) -> dict[str, dict]:
 
 def followers_table(runs: dict[str, dict], current: str) -> str:
     """All followers' figures, a row each; the current run's row is marked."""
-    rows = [["  follower", *(heading for heading, *_ in COLUMNS), "outcome"]]
+    rows = [["  follower", *(word for word, *_ in COLUMNS), "outcome"]]
     for name, run in runs.items():
         cells = [cell(run.get(key), factor, digits) for _, key, factor, digits in COLUMNS]
         rows.append([f"{'>' if name == current else ' '} {name}", *cells, run["outcome"]])

@@ -9,6 +9,9 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from terminal_language import heading, translated
+from terminal_language.cells import width
+
 from run_session.files import write_whole
 
 PAGE = "report.html"
@@ -33,12 +36,22 @@ def write_page(out: Path, title: str, table: str, lines: Sequence[str],
 
 
 def table(rows: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> str:
-    """An aligned text table; columns whose index is in `left` are left-aligned, others right."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    """An aligned text table in the terminal's language; the first row are headings.
+
+    Columns whose index is in `left` are left-aligned, others right.
+    """
+    shown = [[heading(cell) for cell in rows[0]],
+             *([translated(cell) for cell in row] for row in rows[1:])]
+    widths = [max(map(width, column)) for column in zip(*shown, strict=True)]
     return "\n".join("  ".join(
-        cell.ljust(width) if column in left else cell.rjust(width)
-        for column, (cell, width) in enumerate(zip(row, widths, strict=True))).rstrip()
-        for row in rows)
+        _padded(cell, wide, column in left)
+        for column, (cell, wide) in enumerate(zip(row, widths, strict=True))).rstrip()
+        for row in shown)
+
+
+def _padded(text: str, cells: int, left: bool) -> str:
+    free = " " * (cells - width(text))
+    return text + free if left else free + text
 
 
 def table_of(columns: Mapping[str, Callable[[Any], str]], found: Iterable[Any],

@@ -17,6 +17,7 @@ from racecar_description.track.closed_line import load_track
 
 from evaluation.command_line import Parser
 from evaluation.lap_trial import MODEL_PATH
+from evaluation.report import table
 from evaluation.trial import REPORT, Case, Trial
 from marking.bubblewrap import Kind, available, hidden, namespace, shown
 from marking.case_files import COURSES, CaseFile, Scene, make_scene
@@ -169,10 +170,10 @@ class MarkingTrial(Trial):
         return f"{result.name}: {result.points:g} points, {result.outcome}{why}"
 
     def table(self, results: Sequence[Mark]) -> str:
-        rows = [f"{mean([mark.points for mark in marks]):7.2f}  {student}"
+        rows = [(f"{mean([mark.points for mark in marks]):7.2f}", student)
                 for student, marks in by_student(results).items()]
         warned = [] if self.options.kind is not Kind.NONE else ["without a sandbox (--no-sandbox)"]
-        return "\n".join([" points  student", *rows, *warned])
+        return "\n".join([table([(" points", "student"), *rows], left=(1,)), *warned])
 
     def values(self, results: Sequence[Mark]) -> dict:
         return {"sandbox": self.options.kind.value, "rules_sha256": self.options.rules_sha256,

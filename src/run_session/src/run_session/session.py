@@ -16,6 +16,9 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TextIO, TypeVar
 
+from terminal_language import translated
+from terminal_language.cells import cut
+
 from run_session.failure import RunError
 from run_session.files import check_space
 from run_session.launch import Launched
@@ -81,7 +84,8 @@ class StatusLine:
         self._open = False
 
     def _rewrite(self, text: str) -> None:
-        shown = text[: shutil.get_terminal_size().columns - 1]  # a wrapped line cannot be rewritten
+        # A wrapped line cannot be rewritten.
+        shown = cut(translated(text), shutil.get_terminal_size().columns - 1)
         print(f"\r{shown}\x1b[K", end="", file=self._stream, flush=True)
         self._open = True
 

@@ -13,3 +13,12 @@ def translated(text: str) -> str:
     from terminal_language.catalogue import read_catalogue
 
     return read_catalogue(language).translate(text)
+
+
+def heading(word: str) -> str:
+    """A column's heading in a table for the terminal: translated for itself, as it may be a word
+    that is a name elsewhere.
+    """
+    known_as = f"column\4{word}"  # gettext's msgctxt
+    found = translated(known_as)
+    return word if found == known_as else found

@@ -16,9 +16,11 @@ AROUND = re.compile(r"((?:\s|\x1b\[[\d;]*[A-Za-z])*(?:\[\w+\] (?:\[[\d., ]+\]: )
                     r"((?:\s|\x1b\[[\d;]*[A-Za-z])*)", re.DOTALL)
 JOINTS = re.compile(r"(: |; )")
 IN_BRACKETS = re.compile(r"(.+)( \([^()]*\))", re.DOTALL)  # such as argparse's default
-MOST_PARTS = 8  # of a text between colons and semicolons; more are data, not a message
+MOST_PARTS = 8  # of a text between colons and semicolons; more are a list, an item at a time
 WORD = re.compile(r"[A-Za-z]{2,}")
-# Between a Chinese character and a Latin letter or digit, where a value begins or ends.
+# Where a value begins or ends: no space between Chinese characters, one between a Chinese
+# character and a Latin letter or digit.
+SPACED = re.compile(r"(?<=[\u4e00-\u9fff])(?: \0|\0 )(?=[\u4e00-\u9fff])")
 UNSPACED = re.compile(r"(?<=[\u4e00-\u9fff])\0+(?=[A-Za-z0-9])"
                       r"|(?<=[A-Za-z0-9])\0+(?=[\u4e00-\u9fff])")
 FEWEST_WORDS = 3  # of what stays English; what has fewer is a frame for other texts
@@ -32,13 +34,15 @@ class Sentence:
     def __init__(self, english: str, translation: str) -> None:
         self._parts = PLACE.split(english)
         self.translation = translation
+        self._is_list = "; " in "".join(self._parts[::2])
         self.longest = max(self._parts[::2], key=len)
         self.weight = sum(map(len, self._parts[::2]))
 
     def values(self, text: str) -> dict[int, str] | None:
         """The values by number that make this sentence the text, or None; each the shortest.
 
-        Takes linear time, which a regular expression of many places does not.
+        A sentence without a semicolon ends before one. Takes linear time, which a regular
+        expression of many places does not.
         """
         first, *further, last = self._parts[::2]
         at, end = len(first), len(text) - len(last)
@@ -52,12 +56,15 @@ class Sentence:
                 return None
             values.append(text[at:found])
             at = found + len(part)
-        return dict(zip(map(int, self._parts[1::2]), (*values, text[at:end]), strict=True))
+        values.append(text[at:end])
+        if not self._is_list and any("; " in value for value in (values if last else values[:-1])):
+            return None
+        return dict(zip(map(int, self._parts[1::2]), values, strict=True))
 
     def filled(self, values: dict[int, str]) -> str:
         """The translation with these values, Latin ones with spaces beside Chinese."""
         marked = PLACE.sub(lambda place: f"\0{values[int(place[1])]}\0", self.translation)
-        return UNSPACED.sub(" ", marked).replace("\0", "")
+        return UNSPACED.sub(" ", SPACED.sub("", marked)).replace("\0", "")
 
 
 class Catalogue:
@@ -93,8 +100,10 @@ class Catalogue:
         """The translation of the text, or of its parts between colons and semicolons."""
         found = self._clause(text, depth)
         parts = JOINTS.split(text)
-        if found is not None or not 1 < len(parts) < 2 * MOST_PARTS:
+        if found is not None or len(parts) == 1:
             return found
+        if len(parts) > 2 * MOST_PARTS:
+            return self._long_list(text.split("; "), depth)
         told, at, any_found = "", 0, False
         while at < len(parts):
             for end in range(len(parts), at, -2):
@@ -106,6 +115,14 @@ class Catalogue:
             told += parts[end] if end < len(parts) else ""
             at = end + 1
         return told if any_found else None
+
+    def _long_list(self, items: list[str], depth: int) -> str | None:
+        """The translation of each item for itself."""
+        if len(items) == 1:
+            return None
+        found = [self._message(item, depth) for item in items]
+        return "; ".join(new or old for new, old in zip(found, items, strict=True)) if any(
+            found) else None
 
     def _clause(self, text: str, depth: int) -> str | None:
         """The translation of a text, or of what stands before its brackets, and of those."""
