@@ -32,7 +32,7 @@ INSTRUMENTS = re.compile(
 # Parts of the page's server, whose texts only the page shows.
 PAGE = re.compile(
     r"src/sim/sim_viewer/src/sim_viewer/"
-    r"(rviz/(?!config)|tools/|(?!node|options|restart|server|guard)\w+\.py)")
+    r"(rviz/(?!config)|tools/|(?!node|options|restart|running_page|server|guard|drive|scene)\w+\.py)")
 SCRIPTS = ("scripts/own_packages.py",)  # setup runs them
 WORD = re.compile(r"(?<![\w/.-])[A-Za-z]?[a-z']+(?![\w/-]|\.[a-z])")
 DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
@@ -66,7 +66,8 @@ OF_TABLES = (
     "mission", "passed", "after s", "contacts", "why not")
 # Of lists that a file's faults stand in, whose frame has one word.
 OF_LISTS = ("line {0}: {1}",)
-OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works")  # its words
+OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
+            "world {0} ({1} models)", "the text")
 
 
 def texts_of(source: str) -> Iterator[str]:
@@ -105,7 +106,7 @@ def is_door(node: ast.AST) -> bool:
     called = node.func if isinstance(node, ast.Call) else None
     name = getattr(called, "attr", getattr(called, "id", ""))
     return name.startswith("log") or name in (
-        "print", "exit", "error", "info", "warning", "input", "say", "status")
+        "print", "exit", "error", "info", "warning", "input", "say", "status", "Finding")
 
 
 def _strings(node: ast.AST) -> Iterator[ast.expr]:

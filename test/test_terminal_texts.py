@@ -71,10 +71,16 @@ def f(a):
     ("progress.say('files: %s' % x)", {"files: {0}"}),
     ("progress.status(f'waiting for {x}')", {"waiting for {0}"}),
     ("f'at {x} s | lap {y} | off line {z}'", {"at {0} s | lap {1} | off line {2}"}),
+    ("Finding(where, 'it says', status)", {"it says"}),
     ("'one or|two and some'", set())])
 def test_texts_of_descriptions_and_progress_lines(shown: str, texts: set[str]) -> None:
     source = f'"""What it does,\nin two lines.\n"""\n{shown}\n'
     assert set(terminal_texts.texts_of(source)) == texts
+
+
+@pytest.mark.parametrize("text", ["A page runs already: {0}", "the scene cannot be shown: {0}"])
+def test_the_page_s_server_prints_texts(text: str) -> None:
+    assert text in terminal_texts.python_texts()
 
 
 def said(command: list[str], **environment: str) -> str:
