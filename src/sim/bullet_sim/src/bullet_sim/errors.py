@@ -85,7 +85,3 @@ def check_lengths(geometry: object, *names: str) -> None:
         value = getattr(geometry, name)
         if not value > 0.0:
             raise SimulationError(f"{name} is {value:g} m; it must be above 0")
-
-
-class NameTaken(SimulationError):
-    """A model of that name is already in the world."""

@@ -12,7 +12,7 @@ import numpy as np
 
 from bullet_sim.actors import Actor
 from bullet_sim.description import ModelDescription, WorldDescription
-from bullet_sim.errors import NameTaken, SimulationError, UnknownName
+from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.link import Link
 from bullet_sim.model import Model
 from bullet_sim.nan_recovery import lost_models, recover_from_nan
@@ -133,12 +133,12 @@ class World:
 
         As gazebo_ros_api_plugin.cpp, updateSDFAttributes.
 
-        NameTaken if there is a model of that name; SimulationError if the engine cannot
-        hold it.
+        SimulationError if there is a model of that name, or the engine cannot hold it.
         """
         name = name or description.name
         if name in self.models:
-            raise NameTaken(f"a model named {name!r} is already there; delete it or choose another")
+            raise SimulationError(
+                f"a model named {name!r} is already there; delete it or choose another")
         model = self.models[name] = Model(name, description, pose * description.pose, self._client)
         self._note_moving()
         try:

@@ -18,7 +18,7 @@ from bullet_sim.description import (
     SceneDescription,
     Visual,
 )
-from bullet_sim.errors import NameTaken, SimulationError, UnknownName
+from bullet_sim.errors import SimulationError, UnknownName
 from bullet_sim.meshes.loading import load_mesh
 from bullet_sim.meshes.part import MeshPart, box_corners, join_parts
 from bullet_sim.pose import Pose
@@ -101,10 +101,10 @@ class Scene(SceneState):
     def add_light(self, light: LightDescription) -> None:
         """Poses and directions of lights are in the world.
 
-        NameTaken if there is one of that name.
+        SimulationError if there is one of that name.
         """
         if light.name in self.lights:
-            raise NameTaken(f"a light named {light.name!r} is already there")
+            raise SimulationError(f"a light named {light.name!r} is already there")
         self.lights[light.name] = light
         self.version = next(_versions)
 
@@ -125,10 +125,10 @@ class Scene(SceneState):
     def add_link(self, key: LinkKey, visuals: Sequence[Visual], pose: Pose) -> None:
         """Visuals whose mesh cannot be read are left out, with one warning each.
 
-        NameTaken if the link is there already.
+        SimulationError if the link is there already.
         """
         if key in self.nodes:
-            raise NameTaken(f"the scene already has a link {'::'.join(key)}")
+            raise SimulationError(f"the scene already has a link {'::'.join(key)}")
         self._put(key, tuple(visuals), pose)
 
     def _put(self, key: LinkKey, wanted: tuple[Visual, ...], pose: Pose) -> None:

@@ -6,9 +6,8 @@ import time as wall
 from collections.abc import Callable, Sequence
 
 from bullet_sim.control.rate import Rate
-from bullet_sim_ros.control import switching
+from bullet_sim_ros.control import registry, switching
 from bullet_sim_ros.control.controller_context import ControllerContext
-from bullet_sim_ros.control.loading import make_controller
 from bullet_sim_ros.control.switching import Gone, Loaded, ManagerError, Switch
 from bullet_sim_ros.errors import format_error
 
@@ -121,7 +120,7 @@ class ControllerManager:
                     f"Could not load controller '{name}': {format_error(error)}"
                 ) from error
             try:
-                loaded = make_controller(name, context)
+                loaded = _make_controller(name, context)
             except Exception:
                 context.close()
                 raise
@@ -188,3 +187,25 @@ class ControllerManager:
 
     def _collect_tasks(self) -> None:
         self._tasks = [task for loaded in self._loaded.values() for task in loaded.context.tasks]
+
+
+def _make_controller(name: str, context: ControllerContext) -> Loaded:
+    """Create a controller of the parameter `type`; ManagerError if that fails."""
+    kind = context.parameters.value("type", None)
+    if kind is None:
+        raise ManagerError(
+            f"Could not load controller '{name}' because the type was not specified. Did you "
+            "load the controller configuration on the parameter server (namespace: "
+            f"'{context.namespace}')? Parameter {context.parameters.where('type')} is not set")
+    made = registry.find(str(kind))
+    if made is None:
+        raise ManagerError(
+            f"Could not load controller '{name}' because controller type '{kind}' does not "
+            f"exist{registry.hint(str(kind)) or '.'} Use 'rosservice call "
+            "controller_manager/list_controller_types' to get the available types")
+    try:
+        return Loaded(name, str(kind), made(context), context)
+    except Exception as error:
+        raise ManagerError(
+            f"Initializing controller '{name}' failed: {format_error(error)}"
+        ) from error
