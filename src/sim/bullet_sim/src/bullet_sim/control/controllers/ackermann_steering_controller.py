@@ -46,7 +46,10 @@ class AckermannSteering(MobileBase):
     @classmethod
     def from_parameters(cls, p: ControllerParameters, robot: RobotFacts, claim: Claim
                         ) -> AckermannSteering:
-        """Of ackermann_steering_controller."""
+        """Of ackermann_steering_controller.
+
+        PluginError for a parameter that is wrong, SimulationError for a length that is not above 0.
+        """
         rear = p.text("rear_wheel", "rear_wheel_joint")
         front = p.text("front_steer", "front_steer_joint")
         handles = claim("velocity", rear), claim("position", front)

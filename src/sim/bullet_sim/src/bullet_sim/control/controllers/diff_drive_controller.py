@@ -43,7 +43,10 @@ class DiffDrive(MobileBase):
 
     @classmethod
     def from_parameters(cls, p: ControllerParameters, robot: RobotFacts, claim: Claim) -> DiffDrive:
-        """Of diff_drive_controller; the first wheel of each side stands for the others."""
+        """Of diff_drive_controller; the first wheel of each side stands for the others.
+
+        PluginError for a parameter that is wrong, SimulationError for a length that is not above 0.
+        """
         left, right = p.texts("left_wheel"), p.texts("right_wheel")
         if len(left) != len(right):
             raise PluginError(f"left_wheel has {len(left)} joints and right_wheel {len(right)}; "

@@ -59,7 +59,10 @@ class FourWheelSteering(MobileBase):
     @classmethod
     def from_parameters(cls, p: ControllerParameters, robot: RobotFacts, claim: Claim
                         ) -> FourWheelSteering:
-        """Of four_wheel_steering_controller."""
+        """Of four_wheel_steering_controller.
+
+        PluginError for a parameter that is wrong, SimulationError for a length that is not above 0.
+        """
         wheels, steering = (
             [name for axle in ("front", "rear")
              for name in p.pair(f"{axle}_{kind}", "an axle has two, left and right")]

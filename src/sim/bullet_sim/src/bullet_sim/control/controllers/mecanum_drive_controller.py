@@ -54,7 +54,10 @@ class MecanumDrive(MobileBase):
     @classmethod
     def from_parameters(cls, p: ControllerParameters, robot: RobotFacts, claim: Claim
                         ) -> MecanumDrive:
-        """Of mecanum_drive_controller."""
+        """Of mecanum_drive_controller.
+
+        PluginError for a parameter that is wrong, SimulationError for a length that is not above 0.
+        """
         wheels = [_joint(p, corner) for corner in CORNERS]
         handles = [claim("velocity", name) for name in wheels]
         return cls(handles, _geometry(p, robot, wheels), BaseOptions.from_parameters(p),
