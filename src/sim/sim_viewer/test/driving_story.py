@@ -1,5 +1,6 @@
 """The page drives the waffle, and everything that must stop it does, within 0.3 s."""
 
+import math
 import time
 import unittest
 
@@ -56,8 +57,14 @@ class Keys(unittest.TestCase):
         page.wait_for("document.querySelector('.drive-view img')?.naturalWidth > 0")
         return page
 
-    def position(self):
-        return rospy.wait_for_message("odom", Odometry, 60.0).pose.pose.position.x
+    def pose(self):
+        return rospy.wait_for_message("odom", Odometry, 60.0).pose.pose
+
+    def way_ahead(self, start):
+        """How far it is ahead of where it stood and looked, in m."""
+        now, yaw = self.pose(), 2 * math.atan2(start.orientation.z, start.orientation.w)
+        return ((now.position.x - start.position.x) * math.cos(yaw)
+                + (now.position.y - start.position.y) * math.sin(yaw))
 
     def assert_stops(self, stop, what):
         """`stop()` while the robot drives: one zero in time, and nothing more."""
@@ -79,9 +86,9 @@ class Keys(unittest.TestCase):
         self.assertEqual(zeros, late[-1:], f"{what}: one zero, and nothing after it")
 
     def test_keys_drive_and_letting_go_stops(self):
-        start = self.position()
+        start = self.pose()
         self.page.key("w", True)
-        wait_until(lambda: self.position() > start + 0.05, "a way")
+        wait_until(lambda: self.way_ahead(start) > 0.05, "a way")
         self.assert_stops(lambda: self.page.key("w", False), "the key comes up")
         linear, angular = self.wheel.heard[-2][1:]
         self.assertAlmostEqual(linear, 0.2)
