@@ -9,8 +9,8 @@ from geometry_msgs.msg import Point32, Transform
 from sensor_msgs.msg import LaserScan, PointCloud
 
 from costmap_2d import sources
-from costmap_2d.message_age import MessageAge
 from costmap_2d.settings import table
+from costmap_2d.sources import MessageAge
 
 
 class Frames:

@@ -12,7 +12,7 @@ from geometry_msgs.msg import PoseStamped, Quaternion
 from move_base_msgs.msg import MoveBaseGoal
 from nav_msgs.msg import Odometry
 
-from costmap_2d.message_age import MessageAge
+from costmap_2d.sources import MessageAge
 from move_base import goals, services
 from move_base.base import Base
 from move_base.node import MoveBase

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import pytest
 from sensor_msgs.msg import LaserScan
 
-from nav_nodes import topic_watchdog
-from nav_nodes.topic_watchdog import TopicWatchdog, is_published, why_silent
+from nav_nodes import missing_data
+from nav_nodes.missing_data import TopicWatchdog, is_published, why_silent
 
 
 def topic(*sockets):
@@ -34,7 +34,7 @@ def test_the_reason_names_type_and_topic_and_what_to_type():
 
 def test_who_works_on_a_message_is_not_waiting_for_one(monkeypatch):
     at, said = {"now": 0.0}, []
-    monkeypatch.setattr(topic_watchdog.time, "monotonic", lambda: at["now"])
+    monkeypatch.setattr(missing_data.time, "monotonic", lambda: at["now"])
     scans = TopicWatchdog(SimpleNamespace(
         missing=lambda what, _why, since: said.append((what, at["now"] - since)),
         present=lambda what: said.append(what)), "laser scans", "scan")

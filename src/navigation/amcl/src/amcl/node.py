@@ -26,10 +26,9 @@ from nav_algorithms import poses
 from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.monte_carlo import Localisation, Step
 from nav_nodes.ignored import warn_of_ignored
-from nav_nodes.missing_data import MissingData
+from nav_nodes.missing_data import MissingData, TopicWatchdog, watch_clock
 from nav_nodes.parameters import ParameterError, load_table, read_parameters, serve_changes
 from nav_nodes.program import init_node, spin
-from nav_nodes.topic_watchdog import TopicWatchdog, watch_clock
 
 TABLE = Path("params/amcl.yaml")  # below the package's folder
 SCAN_PATIENCE = 0.5               # s of wall time to wait for a scan's odometry

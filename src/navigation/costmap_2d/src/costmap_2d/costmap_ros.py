@@ -13,10 +13,10 @@ import rospy
 
 from costmap_2d.building import build_layer, change_layer
 from costmap_2d.map_input import MapInput
-from costmap_2d.message_age import MessageAge
 from costmap_2d.publishing import CostmapPublisher
 from costmap_2d.sensors import Sensors
 from costmap_2d.settings import TABLES, footprint_of, geometry_of, read_settings, table
+from costmap_2d.sources import MessageAge
 from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.costmap.footprint import circle, padded
 from nav_algorithms.costmap.layered import LayeredCostmap

@@ -14,8 +14,7 @@ from rospy.numpy_msg import numpy_msg
 from nav_algorithms.costmap.layered import LayeredCostmap
 from nav_algorithms.costmap.static import StaticLayer, costs_of
 from nav_nodes.messages import grid_of
-from nav_nodes.missing_data import MissingData
-from nav_nodes.topic_watchdog import is_published
+from nav_nodes.missing_data import MissingData, is_published
 from nav_nodes.transforms import Transforms
 
 

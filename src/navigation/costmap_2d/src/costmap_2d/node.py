@@ -7,10 +7,9 @@ import rospy
 from costmap_2d.costmap_ros import CostmapROS
 from costmap_2d.settings import SEARCHED_UPWARDS
 from nav_nodes.ignored import below, warn_of_ignored
-from nav_nodes.missing_data import MissingData
+from nav_nodes.missing_data import MissingData, watch_clock
 from nav_nodes.parameters import ParameterError
 from nav_nodes.program import init_node, spin
-from nav_nodes.topic_watchdog import watch_clock
 from nav_nodes.transforms import Transforms
 
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from costmap_2d.message_age import MessageAge
 from costmap_2d.settings import LayerSettings
-from costmap_2d.sources import Source
+from costmap_2d.sources import MessageAge, Source
 from nav_algorithms.costmap.layer import Layer
 from nav_algorithms.costmap.obstacles import ObstacleLayer
 from nav_nodes.missing_data import MissingData

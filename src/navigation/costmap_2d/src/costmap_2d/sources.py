@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,15 +13,29 @@ from rospy.numpy_msg import numpy_msg
 from sensor_msgs.msg import LaserScan, PointCloud, PointCloud2
 
 from costmap_2d.clouds import placed, rotation_and_translation, timed_points
-from costmap_2d.message_age import MessageAge
 from nav_algorithms.costmap.obstacles import Observation
-from nav_nodes.missing_data import MissingData
-from nav_nodes.topic_watchdog import why_silent
+from nav_nodes.missing_data import MissingData, why_silent
 from nav_nodes.transforms import Transforms, is_far
 
 TYPES = {"LaserScan": numpy_msg(LaserScan), "PointCloud": PointCloud, "PointCloud2": PointCloud2}
 WAITING = 50   # messages that may wait for their transform, as upstream's queue
 SILENCE = 5.0  # s of wall time until silence is logged, unless expected_update_rate is set
+
+
+@dataclass(frozen=True)
+class MessageAge:
+    """Ages are s of ROS time; negative: from before the clock was set back.
+
+    `what`: "LaserScan on /scan"; `placed`: age of the newest message that tf can transform to the
+    costmap's frame, whether or not an update has used it. `usable`: "LaserScan on /scan that can be
+    placed"; `why` it is not; empty if it is, or if the line about tf says so.
+    """
+
+    what: str
+    usable: str
+    heard: float
+    placed: float
+    why: str = ""
 
 
 class _Arrival(NamedTuple):

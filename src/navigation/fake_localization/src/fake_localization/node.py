@@ -23,10 +23,9 @@ from fake_localization.poses import (
     transform_of,
 )
 from nav_nodes.ignored import warn_of_ignored
-from nav_nodes.missing_data import MissingData
+from nav_nodes.missing_data import MissingData, is_published, watch_clock, why_silent
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node
-from nav_nodes.topic_watchdog import is_published, watch_clock, why_silent
 from nav_nodes.transforms import NEWEST, Transforms
 
 WAITING = 100  # poses that wait for the odometry of their moment, at most; upstream's number

@@ -19,10 +19,9 @@ from gmapping.mapper import TABLE, Mapper, ScanError
 from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.laser_mount import Mount, Mounts
 from nav_nodes.messages import MapAnswer, grid_message, transform_message
-from nav_nodes.missing_data import MissingData
+from nav_nodes.missing_data import MissingData, TopicWatchdog, watch_clock
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
-from nav_nodes.topic_watchdog import TopicWatchdog, watch_clock
 from nav_nodes.transforms import Transforms
 
 PATIENCE = 0.5  # s of wall time to wait for a scan's odometry

@@ -12,9 +12,8 @@ from nav_msgs.msg import OccupancyGrid
 
 from map_server.map_files import check_target, write_map
 from nav_nodes.messages import grid_of, yaw_of
-from nav_nodes.missing_data import MissingData
+from nav_nodes.missing_data import MissingData, is_published, why_silent
 from nav_nodes.program import init_node
-from nav_nodes.topic_watchdog import is_published, why_silent
 
 POLL = 0.5  # s of wall time
 

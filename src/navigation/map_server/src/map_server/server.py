@@ -22,10 +22,9 @@ from map_server.map_files import load_map, read_map
 from map_server.metadata import COARSEST, FINEST, MapMetadata
 from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.messages import LoadedMapAnswer, MapAnswer, grid_message, quaternion_of
-from nav_nodes.missing_data import MissingData
+from nav_nodes.missing_data import MissingData, wait_for_clock
 from nav_nodes.parameters import ParameterError, load_table, read_parameters
 from nav_nodes.program import init_node, spin
-from nav_nodes.topic_watchdog import wait_for_clock
 
 USAGE = ("usage: map_server MAP.yaml (or, deprecated: map_server IMAGE RESOLUTION, with "
          f"{FINEST:g} to {COARSEST:g} m a pixel)")

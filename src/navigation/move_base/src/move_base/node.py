@@ -32,10 +32,9 @@ from move_base.watch import Watch
 from nav_algorithms.costmap.footprint import reach
 from nav_nodes.ignored import below, warn_of_ignored
 from nav_nodes.messages import stamped_pose
-from nav_nodes.missing_data import MissingData
+from nav_nodes.missing_data import MissingData, watch_clock
 from nav_nodes.parameters import ParameterError, read_parameters, serve_changes
 from nav_nodes.program import init_node, spin
-from nav_nodes.topic_watchdog import watch_clock
 from nav_nodes.transforms import Transforms
 
 KILLED = "Aborting on the goal because the node has been killed"

@@ -8,7 +8,7 @@ import rospy
 import tf2_ros
 
 from costmap_2d import CostmapROS
-from costmap_2d.message_age import MessageAge
+from costmap_2d.sources import MessageAge
 from move_base.base import Base
 from nav_nodes.missing_data import MissingData
 
