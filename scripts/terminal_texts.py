@@ -65,9 +65,11 @@ OF_TABLES = (
     "halls", "contact", "mean time, s", "slowest, s", "nearest, m",
     "mission", "passed", "after s", "contacts", "why not")
 # Of lists that a file's faults stand in, whose frame has one word.
-OF_LISTS = ("line {0}: {1}",)
+OF_LISTS = ("line {0}", "line {0}: {1}", "line {0}, column {1}")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
-            "world {0} ({1} models)", "the text")
+            "world {0} ({1} models)", "the text",
+            "{0} packages: all that Debian has for them is installed",  # of deps
+            "{0} packages: to be installed: {1}", "{0} packages: installing {1}")
 
 
 def texts_of(source: str) -> Iterator[str]:

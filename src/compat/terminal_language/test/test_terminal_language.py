@@ -79,6 +79,13 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
      "a.world，第 1 行：注释里不要写 --; 第 2 行：请把 <?xml ...?> 移到最开头; "
      '第 3 行：请加引号写成 a="..."; 第 4 行：请加引号写成 b="..."; 第 5 行：请加引号写成 c="..."; '
      "第 6 行：请去掉根元素后面的内容；和 Gazebo 一样照样读取"),
+    ("mark: --submissions (SUBMISSIONS=) is missing: a folder of submissions",
+     "mark: 缺少 --submissions（SUBMISSIONS=）：放作业的文件夹"),
+    ("legs cannot be built: a: nobody has that name; is b meant? (CMakeLists.txt asks for it)",
+     "legs 不能编译：a：没有谁有这个名字；是不是 b？（CMakeLists.txt 需要它）"),
+    ("3 packages: to be installed: a b", "3 个包：需要安装：a b"),
+    ("line 3", "第 3 行"),
+    ("not well-formed: line 1, column 28", "not well-formed: 第 1 行第 28 列"),
     ("gz: Unable to find file 'a.sdf'", "gz: 找不到文件 'a.sdf'"),
     ("check: x: no such file or package (did you mean y?); try `rospack list`, or give a path",
      "check: x: 没有这个文件或包（是不是 y？）；试试 `rospack list`，或给出路径")])

@@ -41,8 +41,8 @@ class Sentence:
     def values(self, text: str) -> dict[int, str] | None:
         """The values by number that make this sentence the text, or None; each the shortest.
 
-        A sentence without a semicolon ends before one. Takes linear time, which a regular
-        expression of many places does not.
+        A sentence that begins with words and has no semicolon ends before one. Takes linear time,
+        which a regular expression of many places does not.
         """
         first, *further, last = self._parts[::2]
         at, end = len(first), len(text) - len(last)
@@ -57,7 +57,8 @@ class Sentence:
             values.append(text[at:found])
             at = found + len(part)
         values.append(text[at:end])
-        if not self._is_list and any("; " in value for value in (values if last else values[:-1])):
+        ends = values if last else values[:-1]
+        if first and not self._is_list and any("; " in value for value in ends):
             return None
         return dict(zip(map(int, self._parts[1::2]), values, strict=True))
 
@@ -98,6 +99,9 @@ class Catalogue:
 
     def _message(self, text: str, depth: int) -> str | None:
         """The translation of the text, or of its parts between colons and semicolons."""
+        name, _, rest = text.partition(": ")
+        if name.isidentifier() and rest in self._exact:  # a program before its text
+            return f"{self._exact.get(name, name)}: {self._exact[rest]}"
         found = self._clause(text, depth)
         parts = JOINTS.split(text)
         if found is not None or len(parts) == 1:
