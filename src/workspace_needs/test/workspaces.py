@@ -19,7 +19,7 @@ def add_package(source: Path, name: str, depends: str = "", components: str = ""
     (folder / "package.xml").write_text(
         MANIFEST.format(name=name, format=style, depends=declared), encoding="utf-8")
     (folder / "CMakeLists.txt").write_text(
-        f"cmake_minimum_required(VERSION 3.0.2)\nproject({name})\n"
+        f"cmake_minimum_required(VERSION 3.0.2)\nproject({name} CXX)\n"
         f"find_package(catkin REQUIRED{' COMPONENTS' if components else ''} {components})\n"
         f"{cmake}\ncatkin_package()\n", encoding="utf-8")
     return folder
