@@ -5,7 +5,9 @@ from __future__ import annotations
 import importlib.util
 import os
 import re
+from contextlib import suppress
 from pathlib import Path
+from xmlrpc.client import ServerProxy
 
 import yaml
 
@@ -97,17 +99,49 @@ def take(step: dict, opened: list, folder: Path) -> str | None:
     return problem
 
 
-def run(scenario: dict, folder: Path) -> str | None:
+class Roscore:
+    """The one of all scenarios that type it: it takes longer to start than most of them to run."""
+
+    def __init__(self, folder: Path):
+        self._folder, self._terminal, self._port = folder, None, 0
+
+    def cleared(self) -> int:
+        """Its port, once it has nothing of a scenario before; a killed node brings a new one."""
+        if self._terminal is None or not self._clear():
+            self.close()
+            self._port = terminals.free_port()
+            # Alone it takes no notice of ROS_MASTER_URI's port.
+            self._terminal = terminals.Terminal(f"roscore -p {self._port}", self._folder,
+                                                environment(self._folder, self._port))
+            problem = self._terminal.wait_until_shown("started core service")
+            assert not problem, problem
+        return self._port
+
+    def _clear(self) -> bool:
+        """Deletes parameters that are not its own; whether no node but its own is registered."""
+        with suppress(OSError), ServerProxy(f"http://localhost:{self._port}") as master:
+            names = {name.split("/")[1] for name in master.getParamNames("/test")[2]}
+            for name in names - {"rosdistro", "roslaunch", "rosversion", "run_id"}:
+                master.deleteParam("/test", f"/{name}")
+            state = master.getSystemState("/test")[2]
+            return {node for kind in state for _, nodes in kind for node in nodes} <= {"/rosout"}
+        return False  # it has ended
+
+    def close(self) -> None:
+        if self._terminal:
+            self._terminal.close()
+
+
+def run(scenario: dict, folder: Path, roscore: Roscore | None = None) -> str | None:
     """Types a scenario's commands in an empty folder; what went wrong, or None."""
-    port, opened, problem = terminals.free_port(), [], None
+    steps = [step for step in scenario["terminals"] if step["type"] != "roscore"]
+    typed = len(steps) < len(scenario["terminals"])
+    port, opened, problem = roscore.cleared() if typed else terminals.free_port(), [], None
     surroundings = environment(folder, port)
     (folder / "here").mkdir()
     try:
-        for step in scenario["terminals"]:
-            # roscore alone takes no notice of ROS_MASTER_URI's port.
-            command = f"roscore -p {port}" if step["type"] == "roscore" else step["type"]
-            if "in" in step:
-                command = f"cd {step['in']} && {command}"
+        for step in steps:
+            command = f"cd {step['in']} && {step['type']}" if "in" in step else step["type"]
             opened.append(terminals.Terminal(command, folder / "here", surroundings))
             problem = take(step, opened, folder / "here")
             if problem:

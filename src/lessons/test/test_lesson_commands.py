@@ -6,7 +6,9 @@
 import importlib.util
 import os
 import re
+from contextlib import closing
 from pathlib import Path
+from xmlrpc.client import ServerProxy
 
 import pytest
 
@@ -66,7 +68,23 @@ def test_a_terminal_stays_for_what_a_command_leaves_behind(tmp_path):
     assert (tmp_path / "closed").exists()
 
 
+@pytest.fixture(scope="module")
+def roscore(tmp_path_factory):
+    with closing(scenarios.Roscore(tmp_path_factory.mktemp("roscore"))) as one:
+        yield one
+
+
+def test_a_scenario_finds_nothing_of_one_before(roscore):
+    port = roscore.cleared()
+    with ServerProxy(f"http://localhost:{port}") as master:
+        master.setParam("/me", "/turtlesim/background_r", 1)
+        assert roscore.cleared() == port
+        assert master.hasParam("/me", "/turtlesim")[2] is False
+        master.registerSubscriber("/me", "/topic", "*", "http://localhost:1")  # and is killed
+    assert roscore.cleared() != port
+
+
 @pytest.mark.parametrize("scenario", CASES)
-def test_commands(scenario, tmp_path):
-    problem = scenarios.run(scenario, tmp_path)
+def test_commands(scenario, tmp_path, roscore):
+    problem = scenarios.run(scenario, tmp_path, roscore)
     assert not problem, problem

@@ -1,6 +1,7 @@
 """The lessons' C++ programs: each shows what lesson_commands.yaml expects of its script."""
 
 import importlib.util
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -24,7 +25,13 @@ def test_every_program_is_started():
     assert programs - set(typed) == launched
 
 
+@pytest.fixture(scope="module")
+def roscore(tmp_path_factory):
+    with closing(scenarios.Roscore(tmp_path_factory.mktemp("roscore"))) as one:
+        yield one
+
+
 @pytest.mark.parametrize("scenario", CASES)
-def test_program(scenario, tmp_path):
-    problem = scenarios.run(scenario, tmp_path)
+def test_program(scenario, tmp_path, roscore):
+    problem = scenarios.run(scenario, tmp_path, roscore)
     assert not problem, problem
