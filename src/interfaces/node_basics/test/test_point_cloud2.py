@@ -44,7 +44,24 @@ def test_fields_of_unknown_types_are_not_there():
     assert records(message).dtype.names == ("x", "y", "z")
 
 
-@pytest.mark.parametrize("changes", [{"width": 0, "row_step": 0}, {"height": 0}])
+def test_a_field_outside_of_the_point_is_left_out():
+    message = cloud()
+    message.fields.append(PointField("intensity", 12, 7, 1))
+    assert records(message).dtype.names == ("x", "y", "z")
+    assert positions(message).tolist() == POINTS.reshape(4, 3).tolist()
+
+
+def test_the_last_row_may_be_without_its_padding():
+    whole = cloud()
+    message = cloud(data=whole.data[:-len(b"gap!")])
+    assert positions(message).tolist() == POINTS.reshape(4, 3).tolist()
+    with pytest.raises(BadCloud, match="does not match width"):
+        records(cloud(data=message.data[:-1]))
+
+
+@pytest.mark.parametrize("changes", [
+    {"width": 0, "row_step": 0}, {"height": 0}, {"width": 0, "height": 1, "point_step": 0},
+])
 def test_an_empty_cloud_has_no_points(changes):
     assert positions(cloud(data=b"", **changes)).shape == (0, 3)
 

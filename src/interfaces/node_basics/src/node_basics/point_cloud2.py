@@ -15,15 +15,21 @@ class BadCloud(ValueError):
 
 
 def records(cloud: Any) -> np.ndarray:
-    """A structured array (n,) with the message's fields, among them x, y and z; row after row."""
+    """A structured array (n,), row after row, with the fields that lie within a point.
+
+    Among them are x, y and z; the last row may be without its padding.
+    """
     width, height, step = cloud.width, cloud.height, cloud.point_step
-    kind = _point(cloud)
-    row = width * step if height <= 1 else cloud.row_step or width * step
-    if row < width * step or len(cloud.data) < height * row:
+    fields = _fields(cloud)
+    if width * height == 0:  # whatever its steps are
+        return np.empty(0, [(name, number) for name, (number, _) in fields.items()])
+    kind = _point(fields, step)
+    row = width * step if height == 1 else cloud.row_step or width * step
+    if row < width * step or len(cloud.data) < (height - 1) * row + width * step:
         raise BadCloud(f"Data size ({len(cloud.data)} bytes) does not match width ({width}) times "
                        f"height ({height}) times point_step ({step}).  Dropping message.")
-    rows = np.frombuffer(cloud.data, np.uint8, height * row).reshape(height, row)[:, :width * step]
-    return np.ascontiguousarray(rows).reshape(-1).view(kind) if rows.size else np.empty(0, kind)
+    rows = np.ndarray((height, width * step), np.uint8, cloud.data, strides=(row, 1))
+    return rows.reshape(-1).view(kind)
 
 
 def positions(cloud: Any) -> np.ndarray:
@@ -32,18 +38,23 @@ def positions(cloud: Any) -> np.ndarray:
     return np.stack([table[axis].astype(float) for axis in "xyz"], axis=1)
 
 
-def _point(cloud: Any) -> np.dtype:
-    """The type of one point."""
+def _fields(cloud: Any) -> dict[str, tuple[str, int]]:
+    """Each field's number, as NumPy writes it, and its offset in bytes."""
     order = ">" if cloud.is_bigendian else "<"
     fields = {field.name: (order + NUMBERS[field.datatype], field.offset)
               for field in cloud.fields if field.datatype in NUMBERS}
     if missing := [axis for axis in "xyz" if axis not in fields]:
         raise BadCloud(f"the cloud has no field {', '.join(missing)}; it needs x, y and z, and has "
                        f"{', '.join(fields) or 'none'}")
-    for name, (number, offset) in fields.items():
-        if offset + np.dtype(number).itemsize > cloud.point_step:
-            raise BadCloud(f"field {name} lies outside of the point_step of {cloud.point_step} "
-                           "bytes")
-    return np.dtype({"names": list(fields), "formats": [number for number, _ in fields.values()],
-                     "offsets": [offset for _, offset in fields.values()],
-                     "itemsize": cloud.point_step})
+    return fields
+
+
+def _point(fields: dict[str, tuple[str, int]], step: int) -> np.dtype:
+    """The type of one point of `step` bytes."""
+    fitting = {name: (number, offset) for name, (number, offset) in fields.items()
+               if offset + np.dtype(number).itemsize <= step}
+    for axis in "xyz":
+        if axis not in fitting:
+            raise BadCloud(f"field {axis} lies outside of the point_step of {step} bytes")
+    return np.dtype({"names": list(fitting), "formats": [number for number, _ in fitting.values()],
+                     "offsets": [offset for _, offset in fitting.values()], "itemsize": step})
