@@ -3,7 +3,6 @@
 import importlib
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -283,14 +282,24 @@ def test_the_launch_file_spawns_every_robot_in_its_own_namespace():
     assert text.count("spawn_model") == robots.COUNT
 
 
-def _die() -> None:
-    os.kill(os.getpid(), signal.SIGKILL)
-
-
 def test_a_crash_in_a_process_of_its_own_is_an_error_and_a_result_is_of_each_process():
-    with OwnProcess("two processes", count=2) as both, pytest.raises(RunError, match="it died"):
+    with OwnProcess("two processes", count=2) as both:
         assert both.call(max, 1, 2) == [2, 2]
-        both.call(_die)
+        for _ in range(2):  # at the second both are dead already
+            with pytest.raises(RunError, match="two processes: it died"):
+                both.call(os._exit, 1)  # a process that cannot import what it calls dies as well
+
+
+def test_whatever_is_raised_in_a_process_of_its_own_is_an_error_of_one_line():
+    with OwnProcess("a process") as process:
+        for text, call in (("a process: No module named 'no_such'",
+                            (importlib.import_module, "no_such")),
+                           ("a process: two lines", (exec, "raise ValueError('two\\nlines')")),
+                           ("a process: error", (exec, "import pybullet; raise pybullet.error"))):
+            with pytest.raises(RunError) as raised:
+                process.call(*call)
+            assert str(raised.value) == text
+        assert process.call(max, 1, 2) == [2]
 
 
 def test_a_part_that_fails_is_said_and_the_others_go_on(tmp_path, monkeypatch, capsys):

@@ -10,7 +10,6 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import TypeVar
 
-from bullet_sim.errors import SimulationError
 from bullet_sim.physics.engine import STDOUT
 from run_session.failure import RunError
 
@@ -35,14 +34,14 @@ class OwnProcess:
 
     def call(self, function: Callable[..., T], *arguments: object) -> list[T]:
         """What each process returns; RunError where one fails, dies or takes too long."""
-        asked = [self._pool.submit(_within_limit, function, arguments)
-                 for _ in range(self._count)]
         try:
+            asked = [self._pool.submit(_within_limit, function, arguments)
+                     for _ in range(self._count)]
             return [each.result() for each in asked]
         except BrokenProcessPool:
             why = f"it died, or took more than {LIMIT} s"
-        except (SimulationError, RunError, OSError) as error:
-            why = " ".join(str(error).split())
+        except (RunError, OSError) as error:
+            why = str(error)
         raise RunError(f"{self._what}: {why}")
 
 
@@ -52,8 +51,11 @@ def _prepare() -> None:
 
 
 def _within_limit(function: Callable[..., T], arguments: tuple) -> T:
+    """What it returns; RunError, which can be sent to the caller, whatever it raises."""
     signal.alarm(LIMIT)  # ends the process, even one that hangs in a driver
     try:
         return function(*arguments)
+    except Exception as error:
+        raise RunError(" ".join(str(error).split()) or type(error).__name__) from None
     finally:
         signal.alarm(0)
