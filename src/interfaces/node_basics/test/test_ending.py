@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+pytestmark = pytest.mark.processes
+
 LIMIT = 60  # s, wall; a busy machine starts a process slowly
 INTERRUPTED = """
 import time
@@ -28,7 +30,14 @@ print("ready", flush=True)
 while not asked.wait(0.05):
     pass
 print("asked", flush=True)
-time.sleep(600 if sys.argv[1] == "0.1" else 0)
+time.sleep(600 if sys.argv[1] == "1" else 0)
+"""
+STUCK = """
+import os, time
+from node_basics.ending import at_signals
+at_signals(lambda: time.sleep(600), 1, os._exit)
+print("ready", flush=True)
+time.sleep(600)
 """
 SIGNALS = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 
@@ -60,9 +69,16 @@ def test_a_second_signal_does_not_disturb_the_cleanup(start, number):
 
 
 @SIGNALS
-@pytest.mark.parametrize("limit", ["60", "0.1"])
+@pytest.mark.parametrize("limit", ["60", "1"])
 def test_a_program_that_does_not_end_when_asked_is_ended(start, number, limit):
     process = start(ASKED, limit)
     process.send_signal(number)
     assert process.communicate(timeout=LIMIT) == ("asked\n", "")
-    assert process.returncode == (128 + number if limit == "0.1" else 0)
+    assert process.returncode == (128 + number if limit == "1" else 0)
+
+
+def test_a_program_that_cannot_even_be_asked_is_ended(start):
+    process = start(STUCK)
+    process.send_signal(signal.SIGTERM)
+    assert process.communicate(timeout=LIMIT) == ("", "")
+    assert process.returncode == 128 + signal.SIGTERM

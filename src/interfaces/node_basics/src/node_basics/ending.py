@@ -33,14 +33,15 @@ def at_signals(ask: Callable[[], None], limit: float, force: Callable[[int], obj
     """At each of these signals, call `ask`, and after `limit` s (wall) `force` with the exit code.
 
     For a loop that must not be interrupted anywhere, with locks held: `ask` tells it to end soon.
-    It may be stuck, for example with a master that is gone: `force` runs on a thread of its own.
+    Either may be stuck, for example with a master that is gone: `force` runs on a thread of its
+    own.
     """
 
     def end(number: int, _frame: object) -> None:
-        ask()
         last = threading.Timer(limit, force, (128 + number,))
         last.daemon = True
         last.start()
+        ask()
 
     for number in numbers:
         signal.signal(number, end)
