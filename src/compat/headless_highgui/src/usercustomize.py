@@ -7,12 +7,14 @@ Programs of ours print in the language of the locale, and end at Ctrl-C without 
 """
 
 import collections
+import os
 import sys
 import time
 from importlib.machinery import PathFinder
 
 AMENDED = {"cv2", "numpy", "yaml", "joint_state_publisher", "roslaunch.loader", "rospy.topics",
            "tkinter"}
+LAUNCHERS = {"roslaunch", "roscore", "rostest"}
 
 
 class Watch:
@@ -22,7 +24,7 @@ class Watch:
 
     @classmethod
     def find_spec(cls, name, _path=None, _target=None):
-        if name == "rosclean":
+        if name == "rosclean" and os.path.basename(sys.argv[0]) in LAUNCHERS:
             take_own_distutils()
         if name not in cls.waited_for:
             return None
@@ -47,9 +49,10 @@ class Watch:
 
 
 def take_own_distutils():
-    """For roslaunch, by way of rosclean, Python's own distutils instead of setuptools' copy.
+    """For rosclean, which roslaunch imports, Python's own distutils instead of setuptools' copy.
 
-    To import all of setuptools takes as long as to import roslaunch.
+    To import all of setuptools takes as long as to import roslaunch. Somebody's own program that
+    imports roslaunch may want setuptools' copy.
     """
     hack = sys.modules.get("_distutils_hack")
     if hack and sys.version_info < (3, 12):  # later Pythons have none of their own

@@ -274,5 +274,12 @@ def test_windows_with_words_of_their_own_keep_them():
 
 @pytest.mark.skipif(sys.version_info >= (3, 12), reason="Python has no distutils of its own")
 def test_roslaunch_begins_without_setuptools():
-    code = "import rosclean, sys; print('setuptools' in sys.modules, 'distutils' in sys.modules)"
+    code = ("import sys; sys.argv[0] = '/usr/bin/roslaunch'; import rosclean; "
+            "print('setuptools' in sys.modules, 'distutils' in sys.modules)")
     assert run_python(code).stdout == "False True\n"
+
+
+def test_a_program_that_imports_roslaunch_keeps_its_setuptools():
+    code = ("import sys; sys.argv[0] = 'mine.py'; hack = sys.modules.get('_distutils_hack'); "
+            "import rosclean; print(hack is None or hack.DISTUTILS_FINDER in sys.meta_path)")
+    assert run_python(code).stdout == "True\n"
