@@ -21,8 +21,10 @@ LIMIT = 60  # s, wall
 def sliders():
     """The node's settings as rqt_reconfigure has them."""
     client = Client(NODE, timeout=LIMIT)
-    yield client
-    client.close()
+    try:
+        yield client
+    finally:
+        client.close()
 
 
 def settings_now():

@@ -178,6 +178,10 @@ def test_one_wrong_thing_is_one_error_line_and_the_rest_loads(name, caplog):
     assert said == [MENDED[name]["expect"]]
 
 
+def test_there_are_such_models():
+    assert len(BROKEN) > 20 and len(MENDED) > 30
+
+
 def test_files_of_other_people_load_or_say_why_not():
     loaded = 0
     resources = Resources(find_package=lambda package: f"/nonexistent/{package}")
