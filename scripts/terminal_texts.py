@@ -50,6 +50,9 @@ OF_ARGPARSE = (
 OF_SYSTEM = (
     "No such file or directory", "Permission denied", "Is a directory", "Not a directory",
     "File exists", "No space left on device", "Connection refused")
+# Of expat, before a line and column.
+OF_EXPAT = ("not well-formed (invalid token)", "mismatched tag", "no element found",
+            "unclosed token", "duplicate attribute", "junk after document element")
 # Of shell scripts that `python3 -m terminal_language` translates, as the terminal is a learner's.
 OF_SHELL = (
     "rosed: {0} is not installed; {1} opens {2}", "rosed: {0} has no screen here; {1} opens {2}",
@@ -58,12 +61,14 @@ OF_SHELL = (
     "{0} {1} is in C++ and not built yet; type: make -C {2} build CPP=1")
 ABSENT = "src/workspace_needs/data/absent.yaml"
 CHECK = "src/workspace_needs/src/workspace_needs/check/findings.py"
-# Headings of the tables that evaluation and marking print (terminal_language.heading).
+# Words in the tables and progress lines of evaluation and marking (terminal_language.heading).
 OF_TABLES = (
     "  follower", "laps", "lap s", "RMS cm", "max cm", "sent", "dropped", "real time", "outcome",
     "goal", "reached", "straight s", "shortest s", "off cm", "off °", " points", "student",
     "halls", "contact", "mean time, s", "slowest, s", "nearest, m",
-    "mission", "passed", "after s", "contacts", "why not")
+    "mission", "passed", "after s", "contacts", "why not", "yes", "mapping", "goals", "standing")
+# Of progress lines, whose frame has few words.
+OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off")
 # Of lists that a file's faults stand in, whose frame has one word.
 OF_LISTS = ("line {0}", "line {0}: {1}", "line {0}, column {1}")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
@@ -168,8 +173,10 @@ def python_texts() -> dict[str, list[str]]:
     """Each text that a program prints, and the files that it is in."""
     found: dict[str, list[str]] = {text: ["Python's argparse"] for text in OF_ARGPARSE}
     found |= {text: ["the system"] for text in OF_SYSTEM}
+    found |= {text: ["expat"] for text in OF_EXPAT}
     found |= {text: [CHECK] for text in OF_CHECK}
     found |= {f"column{CONTEXT}{word}": ["tables"] for word in OF_TABLES}
+    found |= {text: ["progress-lines"] for text in OF_PROGRESS}
     found |= {text: ["lists-of-faults"] for text in OF_LISTS}
     found |= {text: ["rosed-and-rosrun"] for text in OF_SHELL}
     found |= {text: [ABSENT] for text in absences()}

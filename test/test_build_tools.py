@@ -3,7 +3,6 @@
 import os
 import shutil
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -55,13 +54,14 @@ def in_terminal(line: str) -> subprocess.CompletedProcess:
 
 
 @pytest.fixture(scope="module", params=TOOLS)
-def built(request, tmp_path_factory) -> Iterator[tuple[Path, str]]:
+def built(request, tmp_path_factory) -> tuple[Path, str]:
     """The workspace and what the tool printed.
 
     Each tool's is at the same place, so that the second and third find what is kept of the first:
     what CMake says of each package.
     """
     folder = tmp_path_factory.mktemp("ws", numbered=False)
+    request.addfinalizer(lambda: shutil.rmtree(folder))
     source = folder / "src"
     add(source, "arm", "moveit_core roscpp")
     add(source, "hand", "arm")
@@ -78,8 +78,7 @@ def built(request, tmp_path_factory) -> Iterator[tuple[Path, str]]:
         node="#include <effects/a.h>\nint main() { return 0; }\n")
     done = in_terminal(f"cd {folder} && {TOOLS[request.param]}")
     assert done.returncode == 0, done.stdout[-4000:]
-    yield folder, done.stdout
-    shutil.rmtree(folder)
+    return folder, done.stdout
 
 
 def test_what_nobody_has_is_left_out_in_a_line_and_the_rest_is_built(built):

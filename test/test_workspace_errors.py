@@ -8,7 +8,6 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -69,23 +68,23 @@ def checked(tmp_path_factory, home) -> str:
     folder = tmp_path_factory.mktemp("catkin_ws", numbered=False)
     shutil.copytree(ERRORS, folder / "src")
     done = in_terminal(f"rosrun bullet_sim_ros check {folder}", ROOT / "devel/setup.bash", home)
-    assert done.returncode == 1, done.stdout
     shutil.rmtree(folder)
+    assert done.returncode == 1, done.stdout
     return done.stdout
 
 
 @pytest.fixture(scope="module", params=TOOLS)
-def built(request, tmp_path_factory, home, checked) -> Iterator[tuple[Path, str, str]]:
+def built(request, tmp_path_factory, home, checked) -> tuple[Path, str, str]:
     """The workspace's folder, the tool and what it printed."""
     folder = tmp_path_factory.mktemp("catkin_ws", numbered=False)
+    request.addfinalizer(lambda: shutil.rmtree(folder))
     shutil.copytree(ERRORS, folder / "src")
     if request.param != "catkin_make":
         for name in COMPILED:
             shutil.rmtree(folder / "src" / name)
     done = in_terminal(f"cd {folder} && {TOOLS[request.param]}", ROOT / "devel/setup.bash", home)
     assert done.returncode == 0, done.stdout[-4000:]
-    yield folder, request.param, done.stdout
-    shutil.rmtree(folder)
+    return folder, request.param, done.stdout
 
 
 def expected(tool: str) -> dict[str, str]:

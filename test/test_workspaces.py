@@ -11,7 +11,6 @@ import signal
 import socket
 import subprocess
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -87,12 +86,13 @@ def in_terminal(command: str, setup: Path, port: int | None = None,
 
 
 @pytest.fixture(scope="module", params=BUILDS)
-def built(request, tmp_path_factory) -> Iterator[tuple[Path, str]]:
+def built(request, tmp_path_factory) -> tuple[Path, str]:
     """A workspace with all packages, built by one tool; its folder and what the tool printed.
 
     Both are at the same place: what CMake says of each package is kept of the first.
     """
     folder = tmp_path_factory.mktemp("catkin_ws", numbered=False)
+    request.addfinalizer(lambda: shutil.rmtree(folder))
     for kind in KINDS[request.param]:
         shutil.copytree(WORKSPACES / kind, folder / "src", dirs_exist_ok=True)
     for slow in SLOW if request.param != "catkin_make" else ():
@@ -106,8 +106,7 @@ def built(request, tmp_path_factory) -> Iterator[tuple[Path, str]]:
     shutil.copy(ROOT / "src/learning_topic/scripts/05follower_proporation.py", scripts)
     done = in_terminal(f"cd {folder} && {BUILDS[request.param]}", ours, limit=BUILD_LIMIT)
     assert done.returncode == 0, done.stdout[-4000:]
-    yield folder, done.stdout
-    shutil.rmtree(folder)
+    return folder, done.stdout
 
 
 @pytest.mark.timeout(BUILD_LIMIT + 60)  # the first one, which the build comes before

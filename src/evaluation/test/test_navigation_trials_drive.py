@@ -1,5 +1,8 @@
 """Drives without a simulator: what is seen, and how a drive ends."""
 
+import queue
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -121,6 +124,17 @@ def test_a_drive_that_takes_too_long_is_late():
 def test_a_goal_that_was_called_reached_from_afar_was_not():
     found, _ = drive(FakeRig(limit=15.0, person=True), driving.task_of(CROSSING))
     assert found.outcome == "called reached" and found.why.startswith("from 1.")
+
+
+def test_samples_that_stop_are_noticed_though_the_clock_goes_on():
+    seen = []
+    stack = object.__new__(driving.NavigationStack)  # without ROS
+    stack._samples, stack._newest = queue.SimpleQueue(), 0.0
+    stack._launched = SimpleNamespace(check_time=lambda now, limit: seen.append((now, limit)))
+    stack._samples.put(at(1.0, 0.0))
+    stack._samples.put(at(1.1, 0.0))
+    assert len(stack.samples()) == 2 and stack.samples() == []
+    assert seen == [(1.1, driving.SILENCE)] * 2
 
 
 def test_what_roslaunch_says_of_the_nodes(tmp_path):

@@ -100,7 +100,10 @@ def take(step: dict, opened: list, folder: Path) -> str | None:
 
 
 class Roscore:
-    """The one of all scenarios that type it: it takes longer to start than most of them to run."""
+    """The one of all scenarios that type it: it takes longer to start than most of them to run.
+
+    Only topics' types remain of the scenarios before, which no master forgets.
+    """
 
     def __init__(self, folder: Path):
         self._folder, self._terminal, self._port = folder, None, 0

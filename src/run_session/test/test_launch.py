@@ -41,6 +41,7 @@ def test_where_nobody_listens_nothing_is_up():
 def test_time_that_stands_still_ends_the_run(tmp_path):
     with Family() as family:
         launched = Launched(family, tmp_path / "log")
+        launched.start("course", ["sleep", "100"])
         for now in (1.0, 1.0, 2.0):
             launched.check_time(now, 60.0)
         until = time.monotonic() + 60.0

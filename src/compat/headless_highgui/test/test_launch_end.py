@@ -15,6 +15,7 @@ GUARD = "/share/bullet_sim_ros/scripts/unless_running true"
     ("rosrun xacro xacro.py turtlebot3_wafle.urdf.xacro", "returned with code [3]", SystemExit),
     ("/share/xacro/xacro robot.xacro", "returned with code [2]", ValueError),
     ("xacro robot.xacro", "returned with code [1]", ValueError),
+    ("mine.py xacro robot.urdf", "returned with code [3]", ValueError),
     ("mine robot.xacro.txt", "returned with code [3]", ValueError),
     (None, "returned with code [1]", ValueError)])
 def test_only_a_refusal_ends_it(command, code, ends):

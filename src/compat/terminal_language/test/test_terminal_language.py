@@ -85,7 +85,10 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
      "legs 不能编译：a：没有谁有这个名字；是不是 b？（CMakeLists.txt 需要它）"),
     ("3 packages: to be installed: a b", "3 个包：需要安装：a b"),
     ("line 3", "第 3 行"),
-    ("not well-formed: line 1, column 28", "not well-formed: 第 1 行第 28 列"),
+    ("not well-formed (invalid token): line 1, column 28",
+     "格式不正确（无效符号）: 第 1 行第 28 列"),
+    ("mapping 12.0 s | way-point 3/5, 1.2 m off | 3.0 m driven | touched 0 | real time x1.00",
+     "mapping 12.0 s | 路点 3/5，还差 1.2 m | 已行驶 3.0 m | 碰撞 0 次 | 真实时间的 1.00 倍"),
     ("gz: Unable to find file 'a.sdf'", "gz: 找不到文件 'a.sdf'"),
     ("check: x: no such file or package (did you mean y?); try `rospack list`, or give a path",
      "check: x: 没有这个文件或包（是不是 y？）；试试 `rospack list`，或给出路径")])

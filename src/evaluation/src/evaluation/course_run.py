@@ -79,7 +79,7 @@ def followers_table(runs: dict[str, dict], current: str) -> str:
     for name, run in runs.items():
         cells = [cell(run.get(key), factor, digits) for _, key, factor, digits in COLUMNS]
         rows.append([f"{'>' if name == current else ' '} {name}", *cells, run["outcome"]])
-    return table(rows, left=(0, len(COLUMNS) + 1))
+    return table(rows, left=(0, len(COLUMNS) + 1), names=(0,))
 
 
 def _read(path: Path) -> dict:

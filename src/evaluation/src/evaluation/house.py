@@ -14,6 +14,7 @@ from geometry_msgs.msg import PoseWithCovarianceStamped, Transform
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.msg import Path as PathMessage
 from sensor_msgs.msg import LaserScan
+from terminal_language import heading
 from tf2_msgs.msg import TFMessage
 
 from evaluation.trajectory_error import at_moments
@@ -125,7 +126,7 @@ class Records:
     def show(self, progress: StatusLine, part: str, what: str) -> None:
         """Show the progress line of a part of the run, if one is due."""
         progress.update(self.now, lambda: (
-            f"{part} {self.now:.1f} s | {what} | {self.length:.1f} m driven"
+            f"{heading(part)} {self.now:.1f} s | {what} | {self.length:.1f} m driven"
             f" | touched {len(self.contacts)} | real time x{progress.factor:.2f}"), part)
 
     def note_gap(self, gap: Gap, now: float) -> None:

@@ -14,6 +14,7 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from terminal_language import heading
 
 from evaluation import navigate_score
 from evaluation.house import MAP, Watch, told_pose
@@ -136,7 +137,7 @@ class Driver:
         """Wait until the robot's resting pose has been observed."""
         until = self._watch.records.now + STANDING
         while self._watch.records.now < until:
-            self._look("standing")
+            self._look(heading("standing"))
 
     def _goal(self, goal: np.ndarray) -> MoveBaseGoal:
         on_map = compose(invert(self._map_in_world), goal)

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field
 from typing import ClassVar
 
 import numpy as np
+from terminal_language import heading
 
 from evaluation.house import Contact, Records
 from evaluation.map_agreement import MapAgreement, map_agreement
@@ -239,8 +240,9 @@ def _table(ways: list[Way], speed: float) -> list[str]:
     for number, way in enumerate(ways, start=1):
         rows.append((
             str(number), f"{way.goal[0]:.2f}", f"{way.goal[1]:.2f}",
-            "yes" if way.reached else way.text, f"{way.time:.1f}", f"{way.straight / speed:.1f}",
-            f"{way.shortest / speed:.1f}", f"{way.driven:.2f}", f"{way.off * 100:.1f}",
+            heading("yes") if way.reached else way.text, f"{way.time:.1f}",
+            f"{way.straight / speed:.1f}", f"{way.shortest / speed:.1f}", f"{way.driven:.2f}",
+            f"{way.off * 100:.1f}",
             f"{math.degrees(way.off_yaw):.1f}"))
     return table(rows, left=()).splitlines()
 

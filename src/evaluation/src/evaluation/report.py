@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import statistics
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from html import escape
@@ -15,6 +16,7 @@ from terminal_language.cells import width
 from run_session.files import write_whole
 
 PAGE = "report.html"
+WORD = re.compile(r"[A-Za-z]{2,}")  # a single letter is a unit or an axis
 
 
 def write_json(values: dict, path: Path) -> None:
@@ -35,13 +37,20 @@ def write_page(out: Path, title: str, table: str, lines: Sequence[str],
     return PAGE
 
 
-def table(rows: Sequence[Sequence[str]], left: Collection[int] = (0,)) -> str:
+def table(rows: Sequence[Sequence[str]], left: Collection[int] = (0,),
+          names: Collection[int] = ()) -> str:
     """An aligned text table in the terminal's language; the first row are headings.
 
-    Columns whose index is in `left` are left-aligned, others right.
+    Columns whose index is in `left` are left-aligned, others right; those in `names` have names,
+    which stay as they are. If a heading has no translation, the whole table stays English.
     """
-    shown = [[heading(cell) for cell in rows[0]],
-             *([translated(cell) for cell in row] for row in rows[1:])]
+    headings = [heading(cell) for cell in rows[0]]
+    shown: list[Sequence[str]] = list(rows)
+    if all(new != old or not WORD.search(old)
+           for new, old in zip(headings, rows[0], strict=True)):
+        shown = [headings, *(
+            [text if column in names else translated(text) for column, text in enumerate(row)]
+            for row in rows[1:])]
     widths = [max(map(width, column)) for column in zip(*shown, strict=True)]
     return "\n".join("  ".join(
         _padded(cell, wide, column in left)

@@ -105,6 +105,7 @@ class NavigationStack:
         self.wait(lambda: WAFFLE in simulator.models(), f"model {WAFFLE}", START_LIMIT)
         rospy.init_node("navigation_trials", disable_signals=True, disable_rosout=True)
         self._samples: queue.SimpleQueue[Sample] = queue.SimpleQueue()
+        self._newest = 0.0  # s, simulated, of the last sample
         self.recoveries: list[str] = []
         self._slow_before = 0
         self._there: set[str] = set()
@@ -168,12 +169,16 @@ class NavigationStack:
         return self._walk.get_num_connections() > 0
 
     def samples(self, wait: float = 0.0) -> list[Sample]:
-        """All samples since the last call, after waiting this long, s, wall."""
+        """All samples since the last call, after waiting this long, s, wall.
+
+        RunError if none comes within SILENCE.
+        """
         time.sleep(wait)
-        self._launched.check_time(rospy.get_time(), SILENCE)
         found = []
         while not self._samples.empty():
             found.append(self._samples.get_nowait())
+            self._newest = found[-1].time
+        self._launched.check_time(self._newest, SILENCE)
         return found
 
     def pause(self, seconds: float) -> None:

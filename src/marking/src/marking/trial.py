@@ -173,7 +173,7 @@ class MarkingTrial(Trial):
         rows = [(f"{mean([mark.points for mark in marks]):7.2f}", student)
                 for student, marks in by_student(results).items()]
         warned = [] if self.options.kind is not Kind.NONE else ["without a sandbox (--no-sandbox)"]
-        return "\n".join([table([(" points", "student"), *rows], left=(1,)), *warned])
+        return "\n".join([table([(" points", "student"), *rows], left=(1,), names=(1,)), *warned])
 
     def values(self, results: Sequence[Mark]) -> dict:
         return {"sandbox": self.options.kind.value, "rules_sha256": self.options.rules_sha256,

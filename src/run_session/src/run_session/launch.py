@@ -143,7 +143,7 @@ class Launched:
         still = time.monotonic() - self._since
         if still > limit:
             raise RunError(f"simulated time has stood still at {now:.1f} s for {still:.0f} s:"
-                           " the simulator is paused or hangs")
+                           " the simulator is paused or hangs", self.tail())
 
     def count_said(self, text: str) -> int:
         """How many of the lines that `check` has read contain this text."""

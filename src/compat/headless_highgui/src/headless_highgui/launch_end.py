@@ -27,5 +27,7 @@ def amend_loader(loader):
 
 def is_refusal(command, error):
     """Whether a <param>'s command (None: it has none) ended with its code for a refusal."""
-    programs = {PurePath(word).stem for word in (command or "").split()}
-    return any(f"with code [{REFUSALS[name]}]" in error for name in programs & set(REFUSALS))
+    words = (command or "").split()
+    program = words[2:3] if words[:1] == ["rosrun"] else words[:1]
+    code = REFUSALS.get(PurePath(*program).stem)
+    return code is not None and f"with code [{code}]" in error

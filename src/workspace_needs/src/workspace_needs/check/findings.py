@@ -3,9 +3,9 @@
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass
-from unicodedata import east_asian_width
 
 from terminal_language import translated
+from terminal_language.cells import width
 from terminal_language.wanted import wanted_language
 
 from bullet_sim.errors import shortened
@@ -41,8 +41,7 @@ def table(findings: Iterable[Finding]) -> str:
         # Each for itself: "build: it" would be taken for what is left out.
         said = ": ".join(map(translated, filter(None, (finding.part, finding.how))))
         word = translated(WORDS[finding.status])
-        wide = sum(east_asian_width(letter) == "W" for letter in word)  # two columns each
-        lines.append(shortened(f"  {word:{13 - wide}s} {said}"))
+        lines.append(shortened(f"  {word}{' ' * (13 - width(word))} {said}"))
     return "\n".join(lines).lstrip("\n")
 
 
