@@ -142,6 +142,15 @@ def test_the_columns_of_a_table():
     assert (cell(0.123, 100, 1), cell(None)) == ("12.3", "-")
 
 
+@pytest.mark.parametrize(("rows", "shown"), [
+    ([("student", " points"), ("works", "1.0")], "学生    得分\nworks    1.0"),
+    ([("student", "no word"), ("works", "1.0")], "student  no word\nworks        1.0")])
+def test_a_table_is_in_one_language_and_names_stay(monkeypatch, rows, shown):
+    monkeypatch.setenv("LC_ALL", "C.UTF-8")
+    monkeypatch.setenv("LANGUAGE", "zh_CN")
+    assert table(rows, names=(0,)) == shown
+
+
 def test_cases_can_be_sent_to_another_process():
     from evaluation.lane_trials import LaneTrial
     from evaluation.localisation_trials import LocalisationTrial

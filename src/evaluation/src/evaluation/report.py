@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import json
-import re
 import statistics
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
 
-from terminal_language import heading, translated
+from terminal_language import headings, translated
 from terminal_language.cells import width
 
 from run_session.files import write_whole
 
 PAGE = "report.html"
-WORD = re.compile(r"[A-Za-z]{2,}")  # a single letter is a unit or an axis
 
 
 def write_json(values: dict, path: Path) -> None:
@@ -44,11 +42,10 @@ def table(rows: Sequence[Sequence[str]], left: Collection[int] = (0,),
     Columns whose index is in `left` are left-aligned, others right; those in `names` have names,
     which stay as they are. If a heading has no translation, the whole table stays English.
     """
-    headings = [heading(cell) for cell in rows[0]]
+    titles = headings(list(rows[0]))
     shown: list[Sequence[str]] = list(rows)
-    if all(new != old or not WORD.search(old)
-           for new, old in zip(headings, rows[0], strict=True)):
-        shown = [headings, *(
+    if titles != list(rows[0]):
+        shown = [titles, *(
             [text if column in names else translated(text) for column, text in enumerate(row)]
             for row in rows[1:])]
     widths = [max(map(width, column)) for column in zip(*shown, strict=True)]

@@ -4,6 +4,8 @@ import os
 
 from terminal_language.wanted import wanted_language
 
+COLUMN = "column\4"  # gettext's msgctxt
+
 
 def translated(text: str) -> str:
     """A text for the terminal, for those who print it within somebody else's program."""
@@ -15,10 +17,19 @@ def translated(text: str) -> str:
     return read_catalogue(language).translate(text)
 
 
-def heading(word: str) -> str:
-    """A column's heading in a table for the terminal: translated for itself, as it may be a word
-    that is a name elsewhere.
+def headings(words: list[str] | tuple[str, ...]) -> list[str]:
+    """A table's headings for the terminal; all as they are if a word among them is not known.
+
+    They are translated for themselves, as they may be names elsewhere. A single letter is a unit
+    or an axis.
     """
-    known_as = f"column\4{word}"  # gettext's msgctxt
-    found = translated(known_as)
-    return word if found == known_as else found
+    found = [translated(COLUMN + word) for word in words]
+    if any(each.startswith(COLUMN) and sum(map(str.isalpha, each[len(COLUMN):])) > 1
+           for each in found):
+        return list(words)
+    return [each.removeprefix(COLUMN) for each in found]
+
+
+def heading(word: str) -> str:
+    """A single word of a table or progress line for the terminal."""
+    return headings([word])[0]
