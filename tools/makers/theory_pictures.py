@@ -70,7 +70,7 @@ def laps(law: str) -> np.ndarray:
         seen.append((time, offset_px, follower.steer(offset_px, time)))
         return six.SPEED, seen[-1][2]
 
-    drawn_course.drive(drawn_course.Course(), follow)
+    drawn_course.drive(drawn_course.DrawnCourse(), follow)
     return np.array(seen)
 
 
@@ -146,7 +146,7 @@ def pid(axes):
 
 def arcs(axes):
     """Lesson 7: two points of the line on the floor, and the arcs that lead to them."""
-    seven, course = lesson("07follower_ground"), drawn_course.Course()
+    seven, course = lesson("07follower_ground"), drawn_course.DrawnCourse()
     yaw = np.arctan2(*course.along[130][::-1])
     x, y = course.line[130] + 0.06 * np.array([np.sin(yaw), -np.cos(yaw)])  # beside the line
     points = seven.see_line(course.view((x, y, yaw)).copy(), seven.CAMERA)
