@@ -15,6 +15,8 @@ from run_tests_files import (  # noqa: F401  hooks
     pytest_addoption,
     pytest_collect_file,
     pytest_pycollect_makemodule,
+    pytest_runtest_makereport,
+    pytest_runtest_protocol,
     pytest_xdist_make_scheduler,
     rostest_scripts,
 )

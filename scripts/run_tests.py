@@ -25,7 +25,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import run_tests_files as files
@@ -61,6 +61,7 @@ class Result:
     cases: list[Case] = field(default_factory=list)
     problems: Sequence[str] = ()  # besides failed tests
     seconds: float = 0.0
+    processor: float = 0.0  # s
     first: Result | None = None  # of a run before this one
     output: str = ""  # of a process of its own, if anything failed
 
@@ -73,6 +74,15 @@ class Result:
         """A line for each."""
         failed = [each.test for each in self.those("failed")]
         return [f"{self.name}: {each}" for each in (*failed, *self.problems)]
+
+
+@dataclass
+class Kept:
+    """What is kept from one run to the next."""
+
+    seconds: dict[str, float] = field(default_factory=dict)  # of each file
+    processor: dict[str, float] = field(default_factory=dict)  # s of each file
+    unsteady: list[list[str]] = field(default_factory=list)  # files of each of the last runs
 
 
 def result_of(name: str, problems: Sequence[str], seconds: float) -> Result:
@@ -89,7 +99,8 @@ def results_of(run: Result) -> list[Result]:
     results: dict[str, Result] = {}
     for case in run.cases:
         if case.test == WHOLE:
-            own = result_of(case.file, case.properties, case.seconds)
+            own = result_of(case.file, case.problems, case.seconds)
+            own.processor = case.processor
             if case.outcome == "failed" and not own.failures:  # its worker has crashed
                 own.problems = [case.text]
             results[case.file] = own
@@ -97,24 +108,27 @@ def results_of(run: Result) -> list[Result]:
             result = results.setdefault(case.file, Result(case.file))
             result.cases.append(case)
             result.seconds += case.seconds
+            result.processor += case.processor
     told = run.problems or any(not each.output for each in results.values() if each.failures)
     return [*results.values(), replace(run, cases=[], output=run.output if told else "")]
 
 
-def read_kept(path: Path) -> tuple[dict[str, float], list[list[str]]]:
-    """What is kept in the user's cache: seconds of each file, unsteady files of the last runs."""
+def read_kept(path: Path) -> Kept:
+    """What is kept in the user's cache; of what cannot be read, nothing."""
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError, AttributeError):
         kept = json.loads(path.read_text("utf-8"))
-        return ({name: float(seconds) for name, seconds in kept["seconds"].items()},
-                [list(map(str, run)) for run in kept["unsteady"]][1 - RUNS:])
-    return {}, []
+        seconds, processor = ({name: float(number) for name, number in found.items()}
+                              for found in (kept["seconds"], kept.get("processor", {})))
+        unsteady = [list(map(str, run)) for run in kept["unsteady"]]
+        return Kept(seconds, processor, unsteady[1 - RUNS:])
+    return Kept()
 
 
-def keep(path: Path, seconds: dict[str, float], unsteady: list[list[str]]) -> None:
+def keep(path: Path, kept: Kept) -> None:
     """Write it, unless the home is full or cannot be written."""
     with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps({"seconds": seconds, "unsteady": unsteady}, indent=1), "utf-8")
+        path.write_text(json.dumps(asdict(kept), indent=1), "utf-8")
 
 
 def files_that_say(pattern: re.Pattern, glob: str) -> set[Path]:
@@ -179,15 +193,17 @@ def run_alone(path: Path, tests: Iterable[str] = ()) -> Result:
     """The result of a file, or of these tests of it, when nothing else runs."""
     print(f"  alone: {path.relative_to(ROOT)}", flush=True)
     began = time.monotonic()
+    used = files.processor_seconds()
     problems = files.run_file(path, tuple(tests))
-    return result_of(str(path.relative_to(ROOT)), problems, time.monotonic() - began)
+    result = result_of(str(path.relative_to(ROOT)), problems, time.monotonic() - began)
+    return replace(result, processor=files.processor_seconds() - used)
 
 
 def run_whole(plain: set[Path], apart: set[Path], jobs: int,
-              kept: dict[str, float]) -> list[Result]:
+              seconds: dict[str, float]) -> list[Result]:
     """Run all these files; of those with processes first the ones that took longest."""
     alone = {path for path in apart if ALONE.search(path.read_text(encoding="utf-8"))}
-    beside = sorted(sorted(apart - alone), key=lambda path: -kept.get(
+    beside = sorted(sorted(apart - alone), key=lambda path: -seconds.get(
         str(path.relative_to(ROOT)), UNKNOWN[path.suffix]))
     with ThreadPoolExecutor(2) as pool:
         runs = [pool.submit(run_pytest, "with processes", beside, f"-n{jobs}", *APART),
@@ -221,7 +237,7 @@ def second_run(first: Result) -> Result:
     second = run_alone(ROOT / first.name, [each.test for each in first.those("failed")] * some)
     if some:
         second.cases += [each for each in first.cases if each.outcome != "failed"]
-    return replace(second, first=first, seconds=first.seconds)
+    return replace(second, first=first, seconds=first.seconds, processor=first.processor)
 
 
 def judge_unsteady(results: list[Result], known: list[dict], before: list[list[str]],
@@ -259,10 +275,16 @@ def show_outputs(results: list[Result]) -> None:
                 print(f"\n==== {title}", *run.output.splitlines(), sep="\n  | ")
 
 
-def show_seconds(seconds: dict[str, float], kept: dict[str, float]) -> None:
-    """The files that took longest, and those that grew most against what is kept of them."""
-    grown = {name: now - kept[name] for name, now in seconds.items() if now > kept.get(name, now)}
-    for title, found, form in (("Slowest", seconds, "7.1f"), ("Grew most", grown, "+7.1f")):
+def show_seconds(seconds: dict[str, float], processor: dict[str, float], kept: Kept) -> None:
+    """The files that took longest and most of the processors, and those that grew most since."""
+    def grown(now: dict[str, float], before: dict[str, float]) -> dict[str, float]:
+        return {name: now[name] - before[name] for name in now if now[name] > before.get(name, 1e9)}
+
+    for title, found, form in (
+            ("Slowest", seconds, "7.1f"),
+            ("Grew most", grown(seconds, kept.seconds), "+7.1f"),
+            (f"Most of {sum(processor.values()):.0f} processor seconds", processor, "7.1f"),
+            ("Processor seconds that grew most", grown(processor, kept.processor), "+7.1f")):
         longest = sorted(found, key=found.get, reverse=True)[:SHOWN]
         show(title, (f"{found[name]:{form}} s  {name}" for name in longest))
 
@@ -298,7 +320,7 @@ def main() -> int:
         signal.signal(name, stop)
     shutil.rmtree(OUT, ignore_errors=True)
     OUT.mkdir(parents=True)
-    kept, unsteady = read_kept(KEPT)
+    kept = read_kept(KEPT)
     apart = files_that_say(PROCESSES, "test_*.py") | files_that_say(ANY, "*.test")
     plain = files_that_say(ANY, "test_*.py") - apart - files.rostest_scripts()
     if args.files:
@@ -312,22 +334,26 @@ def main() -> int:
         results = run_pytest("fast", sorted(chosen), *PLAIN)
         print(f"FAST=1 left out {len(plain | apart) - len(chosen)} of {len(plain | apart)} files")
     else:
-        results = run_whole(plain, apart, args.jobs, kept)
+        results = run_whole(plain, apart, args.jobs, kept.seconds)
     results = run_failed_again(results, apart)
     if files.stopping:
         print("interrupted: nothing of it runs any more", file=sys.stderr)
         return 130
     show_outputs(results)
-    seconds = {result.name: round(result.seconds, 1) for result in results if "." in result.name}
-    show_seconds(seconds, kept)
+    of_files = [result for result in results if "." in result.name]
+    seconds = {result.name: round(result.seconds, 1) for result in of_files}
+    processor = {result.name: round(result.processor, 1) for result in of_files}
+    show_seconds(seconds, processor, kept)
     if not args.fast:  # which has no file that could be unsteady, and is none of the ten runs
         print("\n==== conformance", flush=True)
         subprocess.run([sys.executable, ROOT / "scripts" / "conformance.py"])
         known = yaml.safe_load((ROOT / "test" / "unsteady.yaml").read_text(encoding="utf-8"))
-        new, problems = judge_unsteady(results, known or [], unsteady)
+        new, problems = judge_unsteady(results, known or [], kept.unsteady)
         results.append(Result("unsteady files", problems=problems))
-        unsteady.append(new)
-    keep(KEPT, kept | seconds, unsteady)
+        kept.unsteady.append(new)
+    kept.seconds |= seconds
+    kept.processor |= processor
+    keep(KEPT, kept)
     return 0 if show_totals(results) else 1
 
 

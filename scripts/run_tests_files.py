@@ -11,6 +11,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -48,7 +49,8 @@ class Case(NamedTuple):
     outcome: str  # passed, failed or skipped
     text: str  # why
     seconds: float
-    properties: tuple[str, ...] = ()
+    problems: tuple[str, ...] = ()  # of a file that runs on its own, besides its tests
+    processor: float = 0.0  # s
 
 
 def rostest_scripts() -> set[Path]:
@@ -56,6 +58,15 @@ def rostest_scripts() -> set[Path]:
     return {found for launch in ROOT.glob("src/**/test/**/*.test")
             for name in TEST_NODE.findall(launch.read_text(encoding="utf-8"))
             for found in launch.parent.rglob(name)}
+
+
+def processor_seconds() -> float:
+    """What this process has used, and what it has waited for: children, theirs, and so on.
+
+    Not in it is what nobody waited for: a process that still runs, or whose parent ended before it.
+    """
+    used = map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(each.ru_utime + each.ru_stime for each in used)
 
 
 def marked(mark: str) -> list[psutil.Process]:
@@ -132,10 +143,12 @@ def _case(element: ET.Element) -> Case:
                "skipped" if "skipped" in says else "passed")
     name = element.get("name") or "?"
     reason = says["skipped"].get("message") if outcome == "skipped" else None
+    told = [(each.get("name"), each.get("value", "")) for each in element.iter("property")]
     return Case(element.get("file") or element.get("classname") or name, name, outcome,
                 reason or "\n".join(text for part in element for text in part.itertext()),
                 float(element.get("time") or 0.0),
-                tuple(each.get("value", "") for each in element.iter("property")))
+                tuple(value for name, value in told if name == "problem"),
+                sum(float(value) for name, value in told if name == "processor"))
 
 
 def ending(code: int, left: list[str], folder: Path) -> list[str]:
@@ -190,6 +203,21 @@ class FileCollector(pytest.File):
         item = FileItem.from_parent(self, name="whole")
         item.add_marker(pytest.mark.timeout(0))
         yield item
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """pytest's hook: notes what the processors have done before a test and its fixtures."""
+    item.processor_began = processor_seconds()
+    return (yield)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo) -> None:
+    """pytest's hook: the last report of a test, of its teardown, has its processor seconds."""
+    if call.when == "teardown":
+        used = processor_seconds() - item.processor_began
+        item.user_properties.append(("processor", f"{used:.2f}"))
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -90,11 +90,11 @@ def test_a_file_that_is_unsteady_twice_in_ten_runs_fails_the_second_run(runner, 
     second(runner, monkeypatch, passing)
     results = again(runner, failing(runner, FILES[0]))
     twice = [f"{FILES[0]}: unsteady twice in 10 runs"]
-    runner.keep(runner.KEPT, {}, [[FILES[0]], *[[]] * 8])
-    assert runner.judge_unsteady(results, [], runner.read_kept(runner.KEPT)[1])[1] == twice
+    runner.keep(runner.KEPT, runner.Kept(unsteady=[[FILES[0]], *[[]] * 8]))
+    assert runner.judge_unsteady(results, [], runner.read_kept(runner.KEPT).unsteady)[1] == twice
     assert runner.judge_unsteady(results, [{"file": FILES[0]}], [[FILES[0]]])[1] == []
-    runner.keep(runner.KEPT, {}, [[FILES[0]], *[[]] * 9])  # this is the eleventh
-    assert runner.judge_unsteady(results, [], runner.read_kept(runner.KEPT)[1])[1] == []
+    runner.keep(runner.KEPT, runner.Kept(unsteady=[[FILES[0]], *[[]] * 9]))  # this is the eleventh
+    assert runner.judge_unsteady(results, [], runner.read_kept(runner.KEPT).unsteady)[1] == []
 
 
 @pytest.mark.parametrize("text", ["", "[[", "a folder", "{}", "7", "[7]", '{"seconds": [1]}',
@@ -103,10 +103,16 @@ def test_what_was_kept_and_cannot_be_read_is_nothing(runner, text):
     kept = runner.KEPT
     kept.parent.mkdir(parents=True)
     kept.mkdir() if text == "a folder" else kept.write_text(text)
-    assert runner.read_kept(kept) == ({}, [])
-    runner.keep(kept, {"a.py": 1.0}, [["b.py"]])
-    assert runner.read_kept(kept) == (({}, []) if text == "a folder"
-                                      else ({"a.py": 1.0}, [["b.py"]]))
+    assert runner.read_kept(kept) == runner.Kept()
+    some = runner.Kept({"a.py": 1.0}, {"a.py": 2.0}, [["b.py"]])
+    runner.keep(kept, some)
+    assert runner.read_kept(kept) == (runner.Kept() if text == "a folder" else some)
+
+
+def test_what_was_kept_before_processor_seconds_were_is_read(runner):
+    runner.KEPT.parent.mkdir(parents=True)
+    runner.KEPT.write_text('{"seconds": {"a.py": 1.0}, "unsteady": [["b.py"]]}')
+    assert runner.read_kept(runner.KEPT) == runner.Kept({"a.py": 1.0}, {}, [["b.py"]])
 
 
 def test_what_starts_no_process_hangs_or_leaves_one_is_not_run_again(runner, monkeypatch):
@@ -155,11 +161,29 @@ def test_the_list_of_unsteady_files_is_complete_and_fresh(runner):
 
 
 def test_the_slowest_files_are_shown_and_what_grew_most(runner, capsys):
-    runner.show_seconds({f"a{each}.py": float(each) for each in range(12)},
-                        {"a3.py": 1.0, "a4.py": 3.5, "a5.py": 9.0})
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[2:4] == ["     11.0 s  a11.py", "     10.0 s  a10.py"] and len(lines) == 16
-    assert lines[-2:] == ["     +2.0 s  a3.py", "     +0.5 s  a4.py"]
+    seconds = {f"a{each}.py": float(each) for each in range(12)}
+    before = {"a3.py": 1.0, "a4.py": 3.5, "a5.py": 9.0}
+    half = {name: number / 2 for name, number in seconds.items()}
+    runner.show_seconds(seconds, half, runner.Kept(before, {"a3.py": 0.5, "a5.py": 9.0}))
+    lists = capsys.readouterr().out.strip().split("\n\n")
+    slowest, grown, processor, grown_processor = (each.splitlines() for each in lists)
+    assert slowest[1:3] == ["     11.0 s  a11.py", "     10.0 s  a10.py"] and len(slowest) == 11
+    assert grown[1:] == ["     +2.0 s  a3.py", "     +0.5 s  a4.py"]
+    assert processor[:2] == ["Most of 33 processor seconds:", "      5.5 s  a11.py"]
+    assert grown_processor[1:] == ["     +1.0 s  a3.py"]
+
+
+def test_processor_seconds_are_a_files_tests_and_what_these_started(runner, tmp_path):
+    """In a run of many files, and of a file that has a process of its own."""
+    (tmp_path / "many.xml").write_text("<testsuite>" + "".join(
+        f"<testcase file='{file}' name='{test}'><properties><property name='processor' value="
+        f"'{used}'/></properties></testcase>"
+        for file, test, used in (("a.py", "b", 1.25), ("a.py", "c", 2.5), (FILES[0], "whole", 7.5))
+    ) + "</testsuite>")
+    cases, _ = runner.files.read_cases(tmp_path)
+    found = {each.name: each for each in runner.results_of(runner.Result("many", cases))}
+    assert (found["a.py"].processor, found[FILES[0]].processor) == (3.75, 7.5)
+    assert not found[FILES[0]].problems
 
 
 def test_every_reason_to_skip_is_shown_with_its_number(runner, capsys, tmp_path):
@@ -244,8 +268,9 @@ def whole_run(runner, monkeypatch, *words):
 @pytest.mark.parametrize("words", [["--fast"], []])
 def test_a_fast_run_is_none_of_the_ten(runner, monkeypatch, words):
     assert whole_run(runner, monkeypatch, *words) == 0
-    seconds, unsteady = runner.read_kept(runner.KEPT)
-    assert seconds == {"a.py": 0.0} and unsteady == ([] if words else [[]])
+    kept = runner.read_kept(runner.KEPT)
+    assert kept.seconds == kept.processor == {"a.py": 0.0}
+    assert kept.unsteady == ([] if words else [[]])
 
 
 def test_interrupted_in_the_second_run_it_says_so_and_counts_nothing(runner, monkeypatch, capsys):

@@ -26,7 +26,9 @@ TREE = {
                      "@pytest.mark.timeout(1)\n"
                      "def test_hangs(): subprocess.run(['sleep', '1001'])\n",
     "test_import.py": "import there_is_none\n",
-    "test_left.py": MARKED + "import subprocess\n"
+    "test_left.py": MARKED + "import subprocess, sys\n"
+                    "def test_busy(): subprocess.run([sys.executable, '-c', 'import time\\n'\n"
+                    "    'while time.process_time() < 3: pass'])\n"
                     "def test_it(): subprocess.Popen(['sleep', '1002'], start_new_session=True)\n",
     "test_crash.py": MARKED + "import os, signal\n"
                      "def test_ok(): pass\n"
@@ -77,7 +79,7 @@ def test_every_way_to_fail_is_told_and_nothing_runs_on(start, tmp_path):
     said, _ = runner.communicate()
     assert runner.returncode == 1
     failed = said.partition("\nFailed:\n")[2].splitlines()
-    assert failed.pop() == "6 passed, 7 failed, 1 skipped", said
+    assert failed.pop() == "7 passed, 7 failed, 1 skipped", said
     assert sorted(line.strip() for line in failed) == [
         "test/test_crash.py: exit code -11, 0 tests ran",
         "test/test_import.py: test.test_import",
@@ -91,6 +93,8 @@ def test_every_way_to_fail_is_told_and_nothing_runs_on(start, tmp_path):
     assert not any(map(asleep, (1000, 1001, 1002)))
     kept = json.loads((tmp_path / "cache/ros1-driving-courses/tests.json").read_text())
     assert kept["seconds"]["test/test_plain.py"] >= 1.0
+    busy = kept["processor"]["test/test_left.py"]  # which has a process of its own, and that one
+    assert busy >= 3.0 and f"processor seconds:\n{busy:9.1f} s  test/test_left.py\n" in said
     assert kept["unsteady"] == [["test/test_once.py"]]
 
 
