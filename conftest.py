@@ -1,10 +1,12 @@
 """Makes a .test file an item of pytest, and keeps pytest away from the scripts that rostest runs.
 
-Makes the models that come with the simulator, so that tests see their TOML files as they are now.
+Makes the models that come with the simulator, so that tests see their TOML files as they are now,
+and TurtleBot3's worlds if there are none.
 """
 
 import os
 import runpy
+import subprocess
 import sys
 from pathlib import Path
 
@@ -23,4 +25,6 @@ from run_tests_files import (  # noqa: F401  hooks
 
 if "PYTEST_XDIST_WORKER" not in os.environ:  # whose controller has made them
     runpy.run_path(str(ROOT / "src/sim/bullet_sim/src/bullet_sim/props.py"), run_name="__main__")
+    if not (ROOT / "src/compat/turtlebot3_gazebo/worlds").exists():  # after a `git pull`
+        subprocess.run([sys.executable, ROOT / "tools/makers", "turtlebot3_worlds"], check=True)
 collect_ignore = sorted(map(str, rostest_scripts()))

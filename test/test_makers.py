@@ -1,4 +1,4 @@
-"""What tools/makers makes is what is committed; of pictures the pixels are compared."""
+"""What tools/makers makes is what is committed or built; of pictures the pixels are compared."""
 
 import importlib
 import runpy
@@ -21,7 +21,7 @@ def pixels(data: bytes) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", MAKERS)
-def test_what_is_committed_is_what_is_made(name):
+def test_what_is_there_is_what_is_made(name):
     made = importlib.import_module(name).files()
     assert made
     for path, data in made.items():

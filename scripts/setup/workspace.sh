@@ -1,10 +1,10 @@
 # Step 5: the build.
-# Hashes of what catkin reads: a new package or a changed .msg needs a build, a changed .py does not. build/ is made by `pip install ./src/...`.
+# Hashes of what catkin reads: a new package or a changed .msg needs a build, a changed .py does not, except makers. build/ is made by `pip install ./src/...`.
 build_inputs() {
   echo "$root"
-  (cd "$root" && find src \( -name __pycache__ -o -name build \) -prune -o -type f \( -name package.xml -o -name CMakeLists.txt -o -name setup.py \
+  (cd "$root" && find src tools \( -name __pycache__ -o -name build \) -prune -o -type f \( -name package.xml -o -name CMakeLists.txt -o -name setup.py \
     -o -name '*.msg' -o -name '*.srv' -o -name '*.action' -o -name '*.cmake' -o -name '*.in' -o -name '*.c' -o -name '*.cpp' \
-    -o -name '*.h' -o -name '*.hpp' -o -name CATKIN_IGNORE -o -path '*/env-hooks/*' \) -print0 | sort -z | xargs -0 -r sha256sum
+    -o -name '*.h' -o -name '*.hpp' -o -name CATKIN_IGNORE -o -path '*/env-hooks/*' -o -path 'tools/*.py' \) -print0 | sort -z | xargs -0 -r sha256sum
     find src -name build -prune -o -name __init__.py -print | sort)
 }
 build_workspace() {

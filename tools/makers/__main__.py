@@ -1,10 +1,11 @@
-"""Makes the committed meshes, textures, worlds and models anew: the same input, the same bytes.
+"""Makes meshes, textures, worlds and models anew: the same input, the same bytes.
 
     python3 tools/makers                       lists the makers
-    python3 tools/makers NAME... [--out DIR]   writes the files of these (DIR: this repository)
+    python3 tools/makers NAME... [--out DIR]   writes what differs of theirs (DIR: this repository)
 
-A maker is a module beside this one with a function `files`. The pictures of pages have programs of
-their own here, lesson_pictures.py and theory_pictures.py.
+A maker is a module beside this one with a function `files`. What they make is committed, except
+that of turtlebot3_worlds, which each build makes. The pictures of pages have programs of their own
+here, lesson_pictures.py and theory_pictures.py.
 """
 
 import argparse
@@ -13,6 +14,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path += map(str, [*ROOT.glob("src/*/src"), *ROOT.glob("src/*/*/src")])  # as before a build
 MAKERS = ("course", "gazebo_worlds", "lane_world", "racecar_meshes", "racetrack",
           "turtlebot3_meshes", "turtlebot3_worlds", "urdf_lesson_mesh")
 
@@ -25,6 +27,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, metavar="DIR", default=ROOT,
                         help="write below it (default: this repository)")
     options = parser.parse_args()
+    from bullet_sim.props import replace_file  # of the path above
     for name in options.names or MAKERS:
         maker = importlib.import_module(name)
         if not options.names:
@@ -32,12 +35,12 @@ def main() -> int:
             continue
         for path, data in maker.files().items():
             try:
-                (options.out / path).parent.mkdir(parents=True, exist_ok=True)
-                (options.out / path).write_bytes(data)
+                written = replace_file(options.out / path, data)
             except OSError as error:
                 print(f"makers: {options.out / path}: {error.strerror}", file=sys.stderr)
                 return 1
-            print(f"{options.out / path}: {len(data)} bytes")
+            if written:
+                print(f"{options.out / path}: {len(data)} bytes")
     return 0
 
 

@@ -61,8 +61,7 @@ def open_world(resources):
 def test_each_shipped_file_is_one_that_is_made():
     shipped = {str(path.relative_to(ROOT))
                for folder in ("models", "worlds") for path in (PACKAGE / folder).rglob("*")
-               if path.is_file() and path.parent.name != "turtlebot3_world"
-               and "turtlebot3_autorace/course" not in str(path)}  # learning_topic's course
+               if path.is_file() and path.parent.name != "turtlebot3_world"}
     assert shipped == turtlebot3_worlds.files().keys()
 
 

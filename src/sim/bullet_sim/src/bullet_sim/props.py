@@ -228,24 +228,29 @@ def files(props: Path = DATA / "props") -> dict[str, str]:
 
 
 def write_models(models: Path = DATA / "models", props: Path = DATA / "props") -> None:
-    """Make the folder `models` hold what `props` describes, and no other model.
-
-    A file that is right is left alone, and one that is not is replaced at once: simulators that
-    run may be reading it.
-    """
+    """Make the folder `models` hold what `props` describes, and no other model."""
     wanted = files(props)
     for name, text in wanted.items():
-        path = models / name
-        if path.is_file() and path.read_text(encoding="utf-8") == text:
-            continue
-        path.parent.mkdir(parents=True, exist_ok=True)
-        new = path.with_name(f"{path.name}.{uuid.uuid4().hex}")  # containers share process ids
-        new.write_text(text, encoding="utf-8")
-        new.replace(path)
+        replace_file(models / name, text.encode())
     folders = {name.partition("/")[0] for name in wanted}
     for folder in models.iterdir():
         if folder.name not in folders:
             shutil.rmtree(folder)
+
+
+def replace_file(path: Path, data: bytes) -> bool:
+    """Make it hold the data; False if it did already. OSError if it cannot.
+
+    A file that is right is left alone, and one that is not is replaced at once: simulators that
+    run may be reading it.
+    """
+    if path.is_file() and path.read_bytes() == data:
+        return False
+    path.parent.mkdir(parents=True, exist_ok=True)
+    new = path.with_name(f"{path.name}.{uuid.uuid4().hex}")  # containers share process ids
+    new.write_bytes(data)
+    new.replace(path)
+    return True
 
 
 if __name__ == "__main__":
