@@ -1,0 +1,64 @@
+"""catkin_find's answers to rosrun are Debian's, and come without reading every package.xml."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[4]
+DEBIANS = "/usr/bin/catkin_find"
+ROSRUN = (["--without-underlays", "--libexec", "--share"], ["--without-underlays", "--share"])
+PACKAGES = ["above", "both", "below", "installed", "stale", "no_package"]
+
+
+@pytest.fixture(scope="module")
+def terminal(tmp_path_factory) -> dict[str, str]:
+    """Of a workspace with a space in its name, above another one and an installed one."""
+    folder = tmp_path_factory.mktemp("work spaces")
+    sources = {"top": ["above", "both", "group/nested"], "under": ["both", "below"]}
+    for name, packages in sources.items():
+        for path in packages:
+            home = folder / name / "src" / path
+            home.mkdir(parents=True)
+            (home / "package.xml").write_text(
+                f'<package format="2"><name>{home.name}</name><version>0.0.0</version>'
+                "<description>a</description><maintainer email='a@b.com'>a</maintainer>"
+                "<license>MIT</license></package>")
+            (folder / name / "devel/lib" / home.name).mkdir(parents=True)
+        (folder / name / "devel/.catkin").write_text(str(folder / name / "src"))
+    (folder / "top/devel/lib/stale").mkdir()  # its source has gone
+    for path in ("lib", "share"):
+        (folder / "install" / path / "installed").mkdir(parents=True)
+    (folder / "install/.catkin").touch()
+    (folder / "no workspace/lib/above").mkdir(parents=True)
+    prefixes = ["no workspace", "top/devel", "under/devel", "install"]
+    return os.environ | {
+        "CMAKE_PREFIX_PATH": ":".join(str(folder / each) for each in prefixes),
+        "ROS_PACKAGE_PATH": f"{folder}/top/src:{folder}/under/src:{folder}/install/share",
+        "ROS_HOME": str(folder / "ros")}
+
+
+def answer(program: str, words: list[str], terminal: dict[str, str]) -> tuple[int, str]:
+    done = subprocess.run([program, *words], env=terminal, text=True, stdout=subprocess.PIPE)
+    return done.returncode, done.stdout
+
+
+@pytest.mark.parametrize("words", [*([*asked, package] for asked in ROSRUN for package in (
+    *PACKAGES, "nested", "roscpp")), ["above"], ["--share", "both", "package.xml"],
+    ["--first-only", "no_package"], ["--without-underlays", "--share", "--first-only", "both"]],
+    ids=" ".join)
+def test_the_answer_is_debians(terminal, words):
+    wanted = answer(DEBIANS, words, terminal)
+    assert answer(shutil.which("catkin_find"), words, terminal) == wanted
+    if words[-1] in ("above", "both", "nested"):
+        assert wanted[1].count("\n") >= 1
+
+
+def test_rosrun_asks_ours_which_starts_no_python(terminal):
+    found = shutil.which("catkin_find")
+    assert Path(found).resolve() == ROOT / "src/compat/debian_programs/catkin/catkin_find"
+    asked = subprocess.run(["bash", "-x", found, *ROSRUN[0], "both"], env=terminal, text=True,
+                           stderr=subprocess.PIPE, stdout=subprocess.DEVNULL).stderr
+    assert "rospack find both" in asked and DEBIANS not in asked
