@@ -58,7 +58,7 @@ def test_the_answer_is_debians(terminal, words):
 
 def test_rosrun_asks_ours_which_starts_no_python(terminal):
     found = shutil.which("catkin_find")
-    assert Path(found).resolve() == ROOT / "src/compat/debian_programs/catkin/catkin_find"
+    assert Path(found).resolve() == ROOT / "src/compat/debian_programs/bin/catkin_find"
     asked = subprocess.run(["bash", "-x", found, *ROSRUN[0], "both"], env=terminal, text=True,
                            stderr=subprocess.PIPE, stdout=subprocess.DEVNULL).stderr
     assert "rospack find both" in asked and DEBIANS not in asked
