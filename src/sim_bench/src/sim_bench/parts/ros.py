@@ -19,6 +19,7 @@ from run_session import simulator
 from sim_bench.figures import Figure, figure
 from sim_bench.follower import (
     FOLLOWER,
+    IMAGES,
     Follower,
     Seen,
     frame_ages,
@@ -33,6 +34,7 @@ from sim_bench.ros_run import (
     Window,
     cpu_figures,
     marked_lap,
+    read_lines,
     ros_run,
     stage_figures,
     stages,
@@ -56,7 +58,7 @@ def measure(settings: Settings) -> list[Figure]:
         for name, size in SIZES.items():
             say(f"lesson 05 with the camera at {size[0]}x{size[1]}")
             found += _drive(run, name, size, settings)
-        say("nobody subscribed, then paused")
+        say("a waffle that stands: its 1920x1080 images sent, nobody subscribed, then paused")
         return found + _rest(run, settings)
 
 
@@ -91,16 +93,22 @@ def drive_figures(name: str, seen: Seen, windows: list[Window]) -> list[Figure]:
 
 
 def _rest(run: RosRun, settings: Settings) -> list[Figure]:
-    """The simulator's processor time while nothing is asked of it."""
+    """The simulator's processor time while the waffle stands: heard, alone, and paused."""
     launched = launch_course(run)
+    file = run.log_folder / "standing.txt"
+    listener = run.probe("listener", str(file), IMAGES)
+    run.wait(lambda: any(count for (count,) in read_lines(file)), "an image")
     found = []
-    for name in ("idle", "paused"):
+    for name in ("standing", "idle", "paused"):
         run.pause(REST_WARM_UP)
         windows = run.windows(settings.runs(REST_WINDOWS), settings.seconds(REST_WINDOW))
         found.append(figure(f"{name}.cpu.{SIMULATOR}", PERCENT,
                             [window.cpu.get(SIMULATOR, 0.0) for window in windows]))
         found.append(figure(f"{name}.real_time_factor", "x",
                             [window.factor for window in windows]))
-        simulator.pause()
+        if name == "standing":
+            run.stop(listener)
+        else:
+            simulator.pause()
     run.stop(launched)
     return found

@@ -3,6 +3,7 @@
 import itertools
 import logging
 import math
+import operator
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from weakref import WeakValueDictionary
@@ -61,6 +62,21 @@ class Node:
         return self._matrix
 
 
+@dataclass(frozen=True, eq=False)
+class Look:
+    """All of a scene that a picture depends on. It keeps no meshes in memory."""
+
+    version: int
+    poses: tuple[Pose, ...]
+    images: tuple[np.ndarray, ...]
+
+    def equals(self, other: "Look") -> bool:
+        """Whether one camera sees the same, to the last bit."""
+        return (self.version == other.version and self.poses == other.poses
+                and len(self.images) == len(other.images)
+                and all(map(operator.is_, self.images, other.images)))
+
+
 @dataclass(eq=False)
 class SceneState:
     """Lights and links at one moment: a renderer's input. Equal versions differ only in poses."""
@@ -72,6 +88,11 @@ class SceneState:
     # Textures that are not files, by their name in materials: (h, w, 3) uint8 RGB, top row
     # first, never written to. Another array under the same name has the same size.
     images: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def look(self) -> Look:
+        """What has to be equal for an equal picture."""
+        return Look(self.version, tuple(node.pose for node in self.nodes.values()),
+                    tuple(self.images.values()))
 
     def plane_ranks(self) -> dict[float, int]:
         """Rank by size of the planes that links are made of, the smallest 0.

@@ -11,7 +11,7 @@ from bullet_sim.errors import FormatError
 from bullet_sim.link import Link
 from bullet_sim.rendering.frame import LARGEST_SQUARE_PX, CameraView, drawable_size
 from bullet_sim.rendering.renderer import Renderer
-from bullet_sim.rendering.scene import SceneState
+from bullet_sim.rendering.scene import Look, SceneState
 from bullet_sim.sensors.image_effects import Distortion, ImageNoise
 from bullet_sim.sensors.wide_lens import WideLens, mistake_in_lens
 from bullet_sim.world import World
@@ -40,10 +40,25 @@ class CameraReading:
     depth: np.ndarray | None  # (height, width) float32, m along the optical axis; inf: none
 
 
+@dataclass(frozen=True, eq=False)
+class _Picture:
+    """A drawn image before noise, and what it shows."""
+
+    look: Look
+    view: CameraView
+    with_depth: bool  # which also changes the details of colour images
+    rgb: np.ndarray  # as in CameraReading; read-only
+    depth: np.ndarray | None
+
+    def shows(self, look: Look, view: CameraView, with_depth: bool) -> bool:
+        return (self.with_depth == with_depth and self.view == view and self.look.equals(look))
+
+
 class Camera:
     """Gazebo's camera sensor: looks along +x of its sensor frame, z up.
 
-    A `<distortion>` distorts the colours, not the depth, which stays a pinhole's.
+    A `<distortion>` distorts the colours, not the depth, which stays a pinhole's. While it sees
+    the same, to the last bit, it is not drawn again; noise is added to each image.
     FormatError without a <camera>, and for an image that cannot be drawn.
     """
 
@@ -66,6 +81,7 @@ class Camera:
         self._noise: ImageNoise | None = None
         self._distortion: Distortion | None = None
         self._lens: WideLens | None = None
+        self._last: _Picture | None = None
 
     def view(self) -> CameraView:
         """The pinhole camera at its current pose."""
@@ -74,8 +90,11 @@ class Camera:
                           camera.far, self._link.pose * self._sensor.pose * camera.pose)
 
     def sample(self, depth: bool = False) -> CameraReading:
-        """Draw the current image."""
-        return self.render(self.capture(), depth)
+        """The current image; its arrays are the caller's own."""
+        reading = self.render(self.capture(), depth)
+        rgb = reading.rgb if reading.rgb.flags.writeable else reading.rgb.copy()
+        return replace(reading, rgb=rgb,
+                       depth=None if reading.depth is None else reading.depth.copy())
 
     def capture(self) -> CaptureState:
         """The state for an image, not yet drawn. For the thread that owns the world."""
@@ -83,17 +102,29 @@ class Camera:
         with world.profiler.measure("scene"):
             return CaptureState(world.time, world.tick, world.update_scene().frozen(), self.view())
 
-    def render(self, state: CaptureState, depth: bool = False) -> CameraReading:
+    def render(self, state: CaptureState, depth: bool = False,
+               anew: bool = False) -> CameraReading:
         """Draw a captured state, from any thread, one at a time, even while the world steps.
 
-        A wide-angle camera has no depth.
+        A wide-angle camera has no depth. Unless it is to be drawn `anew`, an image that shows the
+        same as the last one has the same arrays: colours without noise are read-only, depth keeps
+        what was written to it.
         """
+        look, last = state.scene.look(), self._last
+        if anew or last is None or not last.shows(look, state.view, depth):
+            self._last = last = None  # its memory is free for the next one
+            self._last = last = _Picture(look, state.view, depth, *self._draw(state, depth))
+        return CameraReading(state.time, self._with_noise(last.rgb, state), last.depth)
+
+    def _draw(self, state: CaptureState, depth: bool) -> tuple[np.ndarray, np.ndarray | None]:
+        """Colours without noise, read-only, and depth, as in CameraReading."""
         if self.wide_angle:
             rgb, metres = self._through_lens(state), None
         else:
             frame = self._renderer.draw(state.scene, state.view, depth)
             rgb, metres = self._bent(frame.rgb, state), frame.depth
-        return CameraReading(state.time, self._with_noise(rgb, state), metres)
+        rgb.setflags(write=False)
+        return rgb, metres
 
     def _through_lens(self, state: CaptureState) -> np.ndarray:
         if self._lens is None:

@@ -16,6 +16,7 @@ from sensor_msgs.srv import SetCameraInfo, SetCameraInfoResponse
 from bullet_sim.description import CameraDescription
 from bullet_sim.sensors.camera import Camera, CameraReading, CaptureState
 from bullet_sim_ros import convert, names, params
+from bullet_sim_ros.array_messages import LastMessage
 from bullet_sim_ros.cameras.encodings import ENCODINGS, UNKNOWN_FORMAT, encode
 from bullet_sim_ros.plugin_host import PluginContext
 from bullet_sim_ros.reconfigure_server import Value, offer_values
@@ -135,6 +136,7 @@ class CameraTopics:
         self._profiler = context.world.profiler
         self._info = settings.info
         self._images = context.advertise(settings.image_topic, Image, queue_size=2, latch=True)
+        self._last_image: LastMessage[Image] = LastMessage()
         self._compressed = CompressedTopic(context, settings.image_topic, latch=True)
         self._infos = context.advertise(settings.info_topic, CameraInfo, queue_size=2)
         context.serve(names.join(settings.namespace, "set_camera_info"), SetCameraInfo,
@@ -157,8 +159,9 @@ class CameraTopics:
         """Publish an image, and its compressed form if that is wanted."""
         settings = self.settings
         with self._profiler.measure("send"):
-            self._images.publish(convert.image_to_msg(
-                reading.rgb, reading.time, settings.frame, settings.encoding))
+            self._images.publish(self._last_image.of(
+                convert.stamp(reading.time), lambda: convert.image_to_msg(
+                    reading.rgb, reading.time, settings.frame, settings.encoding), reading.rgb))
         if wanted.compressed:
             with self._profiler.measure("compress"):
                 self._compressed.publish(reading.rgb, settings.encoding, reading.time,
@@ -199,6 +202,9 @@ class DepthCameraTopics(CameraTopics):
                                       CameraInfo)
         self._points = advertise("pointCloudTopicName", "points", PointCloud2)
         self._rest: Future | None = None  # the last image's depth and points
+        self._cut: np.ndarray | None = None  # the last depth whose far and near parts are NaN
+        self._last_depth: LastMessage[Image] = LastMessage()
+        self._last_points: LastMessage[PointCloud2] = LastMessage()
         self._restart()
         context.on_reset(self._restart)
 
@@ -239,15 +245,20 @@ class DepthCameraTopics(CameraTopics):
             self._depth_infos.publish(self.info(time))
 
     def _publish_depth(self, reading: CameraReading, focal_px: float, wanted: Wanted) -> None:
-        metres, frame = reading.depth, self.settings.frame
+        metres, time, frame = reading.depth, reading.time, self.settings.frame
+        stamp = convert.stamp(time)
         with self._context.world.profiler.measure("depth and points"):
-            convert.remove_outside(metres, self._near, self._far)
+            if metres is not self._cut:
+                convert.remove_outside(metres, self._near, self._far)
+                self._cut = metres
             if wanted.depth:
-                self._depths.publish(
-                    convert.depth_to_msg(metres, reading.time, frame, self._millimetres))
+                self._depths.publish(self._last_depth.of(stamp, lambda: convert.depth_to_msg(
+                    metres, time, frame, self._millimetres), metres))
             if wanted.points:
-                self._points.publish(
-                    convert.points_to_msg(metres, reading.rgb, focal_px, reading.time, frame))
+                self._points.publish(self._last_points.of(stamp, lambda: convert.points_to_msg(
+                    metres, reading.rgb, focal_px, time, frame), metres, reading.rgb))
+            else:
+                self._last_points.forget()  # 33 MB at 1920x1080
 
 
 def _log_frame_time(context: PluginContext, camera: Camera, topic: str) -> None:
@@ -263,7 +274,7 @@ def _log_frame_time(context: PluginContext, camera: Camera, topic: str) -> None:
             if context.closed:
                 return
             start = time.perf_counter()
-            camera.render(state)
+            camera.render(state, anew=True)
             took.append(time.perf_counter() - start)
         view = state.view
         frame_ms = min(took[1:]) * 1e3  # the first one also loads the scene
@@ -283,6 +294,7 @@ class CompressedTopic:
     def __init__(self, context: PluginContext, image_topic: str, latch: bool):
         self._topic = names.join(image_topic, "compressed")
         self.publisher = context.advertise(self._topic, CompressedImage, queue_size=2, latch=latch)
+        self._last: LastMessage[CompressedImage] = LastMessage()
         self._settings: dict = {}
         values = {
             "format": Value(self._parameter("format", FORMATS[0]), "", "", "jpeg or png"),
@@ -294,7 +306,9 @@ class CompressedTopic:
 
     def publish(self, rgb: np.ndarray, encoding: str, time: float, frame: str) -> None:
         """Publish an image, (h, w, 3) uint8 RGB; `encoding` is that of the image topic."""
-        self.publisher.publish(compressed_to_msg(rgb, encoding, time, frame, **self._settings))
+        settings = self._settings
+        self.publisher.publish(self._last.of(convert.stamp(time), lambda: compressed_to_msg(
+            rgb, encoding, time, frame, **settings), rgb, settings))
 
     def _parameter(self, name: str, default: str | int) -> str | int:
         name = names.join(self._topic, name)

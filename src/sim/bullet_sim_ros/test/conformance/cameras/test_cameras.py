@@ -86,8 +86,9 @@ def test_nothing_is_drawn_for_nobody_and_infos_come_with_images(bench, monkeypat
     bench.run(0.3)
     images = bench.listen("/eye/image_raw")
     infos.clear()
+    bench.spawn(WALL)
     bench.run(0.3)
-    assert len(drawn) == len(images) == len(infos) == 3
+    assert len(drawn) == 1 and len(images) == len(infos) == 3
     assert [image.header for image in images] == [info.header for info in infos]
 
 
