@@ -68,7 +68,9 @@ OF_TABLES = (
     "halls", "contact", "mean time, s", "slowest, s", "nearest, m",
     "mission", "passed", "after s", "contacts", "why not", "yes", "mapping", "goals", "standing")
 # Of progress lines, whose frame has few words.
-OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off")
+OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off",
+               "{0} points", "{0} points, {1}", "closed", "stalled", "time is up", "not allowed",
+               "not run", "fault")
 # Of lists that a file's faults stand in, whose frame has one word.
 OF_LISTS = ("line {0}", "line {0}: {1}", "line {0}, column {1}")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words

@@ -34,6 +34,7 @@ class Sentence:
     def __init__(self, english: str, translation: str) -> None:
         self._parts = PLACE.split(english)
         self.translation = translation
+        self._leads = PLACE.match(translation) is not None
         self._is_list = "; " in "".join(self._parts[::2])
         self.longest = max(self._parts[::2], key=len)
         self.weight = sum(map(len, self._parts[::2]))
@@ -41,8 +42,9 @@ class Sentence:
     def values(self, text: str) -> dict[int, str] | None:
         """The values by number that make this sentence the text, or None; each the shortest.
 
-        A sentence that begins with words and has no semicolon ends before one. Takes linear time,
-        which a regular expression of many places does not.
+        A sentence that begins with words and has no semicolon ends before one; a value that it
+        begins with has no joint, or stays in front. Takes linear time, which a regular expression
+        of many places does not.
         """
         first, *further, last = self._parts[::2]
         at, end = len(first), len(text) - len(last)
@@ -57,6 +59,8 @@ class Sentence:
             values.append(text[at:found])
             at = found + len(part)
         values.append(text[at:end])
+        if not first and not self._leads and JOINTS.search(values[0]):
+            return None
         ends = values if last else values[:-1]
         if first and not self._is_list and any("; " in value for value in ends):
             return None
