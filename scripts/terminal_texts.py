@@ -71,6 +71,9 @@ OF_TABLES = (
 OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off",
                "{0} points", "{0} points, {1}", "closed", "stalled", "time is up", "not allowed",
                "not run", "fault")
+# Of an exercise's findings, whose values may be a word.
+OF_FINDINGS = ("pass  {0}", "FAIL  {0}", "{0}, wanted {1}", "at least {0}", "at most {0}",
+               "messages", "there", "missing", "drives", "stands", "{0} poses")
 # Of lists that a file's faults stand in, whose frame has one word.
 OF_LISTS = ("line {0}", "line {0}: {1}", "line {0}, column {1}")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
@@ -115,7 +118,8 @@ def is_door(node: ast.AST) -> bool:
     called = node.func if isinstance(node, ast.Call) else None
     name = getattr(called, "attr", getattr(called, "id", ""))
     return name.startswith("log") or name in (
-        "print", "exit", "error", "info", "warning", "input", "say", "status", "Finding")
+        "print", "exit", "error", "info", "warning", "input", "say", "status", "Finding",
+        "near", "holds", "at_least", "at_most")
 
 
 def _strings(node: ast.AST) -> Iterator[ast.expr]:
@@ -179,6 +183,7 @@ def python_texts() -> dict[str, list[str]]:
     found |= {text: [CHECK] for text in OF_CHECK}
     found |= {f"column{CONTEXT}{word}": ["tables"] for word in OF_TABLES}
     found |= {text: ["progress-lines"] for text in OF_PROGRESS}
+    found |= {text: ["findings"] for text in OF_FINDINGS}
     found |= {text: ["lists-of-faults"] for text in OF_LISTS}
     found |= {text: ["rosed-and-rosrun"] for text in OF_SHELL}
     found |= {text: [ABSENT] for text in absences()}

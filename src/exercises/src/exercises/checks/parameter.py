@@ -27,7 +27,8 @@ def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
 
         def driven(when: str, wanted: float) -> Finding:
             until(lambda: abs(commands[-1].linear.x - wanted) < TOLERANCE, limits["seconds"])
-            return near(f"speed {when}", commands[-1].linear.x, wanted, TOLERANCE, " m/s")
+            return near(f"commanded speed ({when})", commands[-1].linear.x, wanted, TOLERANCE,
+                        " m/s")
 
         yield driven("before anybody has set it", limits["default"])
         rospy.set_param(parameter, limits["other"])
