@@ -75,7 +75,7 @@ OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off",
 OF_FINDINGS = ("pass  {0}", "FAIL  {0}", "{0}, wanted {1}", "at least {0}", "at most {0}",
                "messages", "there", "missing", "drives", "stands", "{0} poses")
 # Of lists that a file's faults stand in, whose frame has one word.
-OF_LISTS = ("line {0}", "line {0}: {1}", "line {0}, column {1}")
+OF_LISTS = ("one of {0}", "line {0}", "line {0}: {1}", "line {0}, column {1}")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
             "world {0} ({1} models)", "the text",
             "{0} packages: all that Debian has for them is installed",  # of deps

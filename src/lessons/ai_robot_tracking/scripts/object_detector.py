@@ -66,7 +66,11 @@ class ObjectDetector:
             now = time.monotonic()
             if message is not None:
                 heard = now
-                self.work(message)
+                try:
+                    self.work(message)
+                except rospy.ROSException:
+                    if not rospy.is_shutdown():  # else its topics were closed meanwhile
+                        raise
                 if self.settings.max_rate > 0:  # in wall time, to limit the machine's load
                     due = now + 1 / self.settings.max_rate
             elif now - max(heard, due) > QUIET_TIME:
