@@ -22,6 +22,7 @@ def sources() -> list[Path]:
         ["git", "-C", str(ROOT), "ls-files", "-z", "--cached", "--others", "--exclude-standard",
          "src"], capture_output=True, check=True).stdout
     paths = [ROOT / os.fsdecode(name) for name in listed.split(b"\0") if name]
+    paths += (SRC / "compat/turtlebot3_gazebo/worlds").iterdir()  # which the build makes
     return sorted(path for path in paths if path.is_file())
 
 

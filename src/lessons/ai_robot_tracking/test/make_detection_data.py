@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the files in detection_data: stored outputs of both YOLO layouts, and tiny networks.
 
-Needs the package onnx (requirements-training.txt); the same files come out each time.
+Needs the package onnx (Debian's python3-onnx); the same files come out each time.
 """
 
 from pathlib import Path

@@ -6,10 +6,9 @@ overlap; the ten best are assigned to it, with target scores by the quality of t
 
 from __future__ import annotations
 
-import math
-
 import torch
 from torch.nn import functional
+from torchvision.ops import box_iou, complete_box_iou_loss
 
 ANSWERING = 10  # cells assigned to one box
 SCORE_POWER, OVERLAP_POWER = 0.5, 6.0
@@ -42,8 +41,8 @@ def detection_loss(
     if not answers.any():
         return CLASS_WEIGHT * class_cost
     true_boxes = truth[..., 1:5].gather(1, owner.clamp(min=0)[..., None].expand(-1, -1, 4))
-    overlap = complete_overlap(boxes[answers], true_boxes[answers])
-    box_cost = ((1 - overlap) * quality[answers]).sum() / total
+    off = complete_box_iou_loss(boxes[answers], true_boxes[answers])
+    box_cost = (off * quality[answers]).sum() / total
     return BOX_WEIGHT * box_cost + CLASS_WEIGHT * class_cost
 
 
@@ -60,7 +59,7 @@ def _assign(
     boxes: torch.Tensor, logits: torch.Tensor, near: torch.Tensor, truth: torch.Tensor
 ) -> tuple[torch.Tensor, torch.Tensor]:
     """(b, n) index of the box that a cell is assigned to, -1: none; and its target score."""
-    overlap = plain_overlap(truth[:, :, None, 1:5], boxes[:, None]) * near
+    overlap = torch.stack(list(map(box_iou, truth[..., 1:5], boxes))) * near
     label = truth[..., 0].clamp(min=0).long()
     scores = logits.sigmoid().transpose(1, 2).gather(
         1, label[..., None].expand(-1, -1, boxes.shape[1]))
@@ -75,25 +74,3 @@ def _assign(
     peak = merit.amax(2, keepdim=True).clamp(min=TINY)
     sure = merit / peak * (overlap * chosen).amax(2, keepdim=True)
     return owner, sure.gather(1, owner.clamp(min=0)[:, None]).squeeze(1)
-
-
-def plain_overlap(a: torch.Tensor, b: torch.Tensor) -> torch.Tensor:
-    """Intersection over union of boxes (..., 4) of left, top, right, bottom."""
-    low, high = torch.maximum(a[..., :2], b[..., :2]), torch.minimum(a[..., 2:], b[..., 2:])
-    common = (high - low).clamp(min=0).prod(-1)
-    areas = (a[..., 2:] - a[..., :2]).prod(-1) + (b[..., 2:] - b[..., :2]).prod(-1)
-    return common / (areas - common + 1e-7)
-
-
-def complete_overlap(a: torch.Tensor, b: torch.Tensor) -> torch.Tensor:
-    """CIoU: IoU minus penalties for centre distance and shape; its gradient exists at 0 too."""
-    overlap = plain_overlap(a, b)
-    low, high = torch.minimum(a[..., :2], b[..., :2]), torch.maximum(a[..., 2:], b[..., 2:])
-    diagonal = ((high - low) ** 2).sum(-1) + 1e-7
-    apart = (((a[..., :2] + a[..., 2:]) - (b[..., :2] + b[..., 2:])) ** 2).sum(-1) / 4
-    size_a, size_b = a[..., 2:] - a[..., :2], b[..., 2:] - b[..., :2]
-    turn = torch.atan(size_a[..., 0] / (size_a[..., 1] + 1e-7)) - torch.atan(
-        size_b[..., 0] / (size_b[..., 1] + 1e-7))
-    shape = 4 / math.pi**2 * turn**2
-    weight = (shape / (shape - overlap + 1 + 1e-7)).detach()
-    return overlap - apart / diagonal - weight * shape

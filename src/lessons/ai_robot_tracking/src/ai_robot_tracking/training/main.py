@@ -36,8 +36,8 @@ def main(arguments: list[str]) -> int:
         print(f"train_detector: {failure}", file=sys.stderr)
         return NOT_RUN
     except ModuleNotFoundError as error:
-        print(f"train_detector: no module {error.name} here; `train` runs where "
-              "requirements-training.txt is installed, `draw` and `report` in .venv",
+        print(f"train_detector: no module {error.name} here; it is started by rosrun, and `train` "
+              "needs: sudo apt install python3-torch python3-torchvision python3-onnx",
               file=sys.stderr)
         return NOT_RUN
 
@@ -85,7 +85,7 @@ def _whole(text: str, least: int) -> int:
     return int(text)
 
 
-# Each command imports its own modules: no environment has those of all three.
+# Each command imports its own modules: only `train` needs those of PyTorch.
 def _draw(given: argparse.Namespace) -> int:
     from ai_robot_tracking.training.dataset import TRAIN_FIRST
     from ai_robot_tracking.training.draw_sets import draw_set

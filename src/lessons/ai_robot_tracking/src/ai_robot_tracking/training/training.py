@@ -4,12 +4,12 @@ It runs on one thread: the same images and seed give the same bytes."""
 
 from __future__ import annotations
 
-import copy
 import hashlib
 import json
 import math
 import pickle
 import platform
+import re
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
@@ -18,6 +18,8 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from torch.optim.lr_scheduler import LambdaLR
+from torch.optim.swa_utils import AveragedModel
 
 from ai_robot_tracking.training import CLASSES, TrainingError
 from ai_robot_tracking.training.dataset import (
@@ -28,10 +30,9 @@ from ai_robot_tracking.training.dataset import (
     augmented,
     read_sets,
 )
-from ai_robot_tracking.training.export import ExportError, export
-from ai_robot_tracking.training.layers import STRIDES
+from ai_robot_tracking.training.export import export
 from ai_robot_tracking.training.loss import detection_loss
-from ai_robot_tracking.training.network import Detector, cell_centres
+from ai_robot_tracking.training.network import Detector, cells
 
 SMALL = (160, 192)  # height, width, px
 WHOLE = (INPUT_HEIGHT, INPUT_WIDTH)
@@ -55,10 +56,6 @@ class Plan:
     small: float = 0.55  # first share of the steps, with images of size SMALL: faster
     calm: float = 0.1  # last share of the steps, with images that are not augmented
 
-    def as_table(self) -> dict[str, float]:
-        """Names and values, for the report."""
-        return asdict(self)
-
 
 FIRST = Plan()
 FURTHER = Plan(steps=1500, until=1500, learning_rate=1e-3, small=0.0, calm=0.15)
@@ -73,9 +70,9 @@ class Progress:
     seconds: float  # wall, since the start
 
 
-def train(pictures: PictureSet, plan: Plan, say: Callable[[Progress, Detector], None],
+def train(pictures: PictureSet, plan: Plan, say: Callable[[Progress], None],
           start: Detector | None = None) -> Detector:
-    """The averaged network, ready for export; `say` also gets its current state.
+    """The averaged network, ready for export.
 
     With `start` it continues from that network, which is modified.
     """
@@ -83,27 +80,26 @@ def train(pictures: PictureSet, plan: Plan, say: Callable[[Progress, Detector], 
     torch.use_deterministic_algorithms(True)
     torch.set_num_threads(1)
     network = (start or Detector()).to(memory_format=torch.channels_last)
-    averaged = copy.deepcopy(network)
+    averaged = AveragedModel(network, avg_fn=_mean(plan.averaging), use_buffers=True)
     optimiser = torch.optim.AdamW(_groups(network, plan.weight_decay), lr=plan.learning_rate)
+    rates = LambdaLR(optimiser, lambda step: _rate(step, plan))
     feed, began, losses = _Feed(pictures, plan), time.monotonic(), []
     network.train()
     for step in range(plan.until):
-        for group in optimiser.param_groups:
-            group["lr"] = plan.learning_rate * _rate(step, plan)
         images, truth = feed.batch(step)
         boxes, logits = network(images)
-        loss = detection_loss(boxes, logits, _centres(images.shape[2:]), truth)
+        loss = detection_loss(boxes, logits, cells(*images.shape[2:])[0], truth)
         optimiser.zero_grad(set_to_none=True)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(network.parameters(), 10.0)
         optimiser.step()
-        _average(averaged, network, min(plan.averaging, (1 + step) / (10 + step)))
+        rates.step()
+        averaged.update_parameters(network)
         losses.append(loss.item())
         if (step + 1) % REPORT_STEPS == 0 or step + 1 == plan.until:
-            say(Progress(step + 1, float(np.mean(losses)), time.monotonic() - began),
-                averaged)
+            say(Progress(step + 1, float(np.mean(losses)), time.monotonic() - began))
             losses.clear()
-    return averaged.eval()
+    return averaged.module.eval()
 
 
 class _Feed:
@@ -143,12 +139,6 @@ class _Feed:
         return self._shuffled
 
 
-def _centres(shape: tuple[int, int]) -> torch.Tensor:
-    height, width = shape
-    return torch.cat([cell_centres(height // stride, width // stride, stride)
-                      for stride in STRIDES])
-
-
 def _groups(network: Detector, decay: float) -> list[dict]:
     """Parameter groups: no weight decay for biases and norms."""
     large = [p for p in network.parameters() if p.ndim > 1]
@@ -163,11 +153,9 @@ def _rate(step: int, plan: Plan) -> float:
     return plan.last_rate + (1 - plan.last_rate) * (1 + math.cos(math.pi * share)) / 2
 
 
-@torch.no_grad()
-def _average(averaged: Detector, network: Detector, keep: float) -> None:
-    for mean, now in zip(averaged.state_dict().values(), network.state_dict().values()):
-        if mean.dtype.is_floating_point:
-            mean.lerp_(now, 1 - keep)
+def _mean(decay: float) -> Callable:
+    """The running mean of the weights, which forgets the first ones sooner."""
+    return lambda mean, now, steps: now + (mean - now) * min(decay, (1 + steps) / (10 + steps))
 
 
 def run_training(
@@ -183,7 +171,7 @@ def run_training(
     network, before = read_start(start) if start else (None, [])
     curve: list[Progress] = []
     began = time.process_time()
-    network = train(drawn, plan, lambda point, _: _say(point, plan, curve), network)
+    network = train(drawn, plan, lambda point: _say(point, plan, curve), network)
     torch.save(network.state_dict(), model.with_suffix(".pt"))
     done = training_round(network, drawn, plan, curve, time.process_time() - began)
     write_files(network, model, [*before, done])
@@ -217,7 +205,7 @@ def training_round(network: Detector, drawn: PictureSet, plan: Plan, curve: list
                    cpu_time: float) -> dict:
     """The training's log, for the report."""
     return {
-        "plan": plan.as_table(),
+        "plan": asdict(plan),
         "pictures": len(drawn),
         "first_seed": drawn.first,
         "pictures_sha256": _digest(drawn),
@@ -233,10 +221,7 @@ def training_round(network: Detector, drawn: PictureSet, plan: Plan, curve: list
 
 def write_files(network: Detector, model: Path, rounds: list[dict]) -> None:
     """Write the model, its class names, and its log."""
-    try:
-        export(network, model, {"description": "trained on pictures of bullet_sim's renderer"})
-    except ExportError as error:
-        raise TrainingError(str(error)) from error
+    export(network, model, {"description": "trained on pictures of bullet_sim's renderer"})
     names = "".join(f"  - {name}\n" for name in CLASSES)
     model.with_suffix(".yaml").write_text(
         f"# What {model.name} was trained for.\nnames:\n{names}"
@@ -267,9 +252,8 @@ def _digest(drawn: PictureSet) -> str:
 def _processor() -> str:
     """The processor's name, and the instruction set that torch uses."""
     try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+        told = re.findall(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
     except OSError:
-        lines = []
-    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    name = names[0] if names else platform.processor() or platform.machine()
-    return f"{name}, {torch.backends.cpu.get_cpu_capability()}"
+        told = []
+    used = re.findall(r"CPU capability usage: (\S+)", torch.__config__.show())
+    return ", ".join([*(told or [platform.processor() or platform.machine()])[:1], *used])
