@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from evaluation.map_agreement import map_agreement
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 
 
 def room():

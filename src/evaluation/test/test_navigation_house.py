@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from evaluation.house import load_house
-from nav_algorithms.grid import OCCUPIED
+from nav_algorithms.cells import OCCUPIED
 from nav_algorithms.likelihood_field import distances
 from run_session.failure import RunError
 from trial_worlds.errors import WorldError

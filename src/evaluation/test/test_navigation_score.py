@@ -23,7 +23,7 @@ from evaluation.navigate_score import (
     summarize,
 )
 from evaluation.picture import bgr, lap_colour
-from nav_algorithms.grid import OCCUPIED, UNKNOWN, OccupancyGrid
+from nav_algorithms.cells import OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.poses import compose, invert
 from run_session.failure import RunError
 from run_session.files import find_package

@@ -6,18 +6,16 @@ import tarfile
 
 import pytest
 
-from exercises.catalogue import find_exercises
-
-NODES = "action", "ending", "parameter", "radar", "switch", "wall"  # checks that start a master
+from exercises.catalogue import MODULES, find_exercises
 
 
 def pytest_generate_tests(metafunc):
-    """`exercise`: each that needs no master; `node_exercise`: each other."""
+    """`exercise`: each whose check starts no master; `node_exercise`: each other."""
     for argument, nodes in ("exercise", False), ("node_exercise", True):
         if argument in metafunc.fixturenames:
             metafunc.parametrize(argument, [
                 pytest.param(exercise, id=name) for name, exercise in find_exercises().items()
-                if (exercise.check in NODES) == nodes])
+                if (exercise.check in MODULES["nodes"]) == nodes])
 
 
 @pytest.fixture

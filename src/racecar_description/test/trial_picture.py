@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from trial_venue import OUTLINE
 
-from nav_algorithms.grid import UNKNOWN, OccupancyGrid
+from nav_algorithms.cells import UNKNOWN, OccupancyGrid
 from nav_algorithms.poses import transform_points
 
 PX_PER_CELL, MARGIN = 5, 6

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from nav_algorithms import likelihood_field
-from nav_algorithms.grid import OCCUPIED
+from nav_algorithms.cells import OCCUPIED
 from nav_algorithms.poses import compose
 from trial_worlds.house import open_walls, true_map
 

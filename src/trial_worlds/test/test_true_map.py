@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN
+from nav_algorithms.cells import FREE, OCCUPIED, UNKNOWN
 from trial_worlds.house import open_walls, true_map, visible_walls
 
 BOX = """<model name="{name}"><static>true</static><pose>{pose}</pose><link name="l">

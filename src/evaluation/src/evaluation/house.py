@@ -18,7 +18,7 @@ from terminal_language import heading
 from tf2_msgs.msg import TFMessage
 
 from evaluation.trajectory_error import at_moments
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 from nav_algorithms.poses import compose, wrap_angle
 from run_session import simulator
 from run_session.files import find_package, located

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from nav_algorithms.grid import OCCUPIED, UNKNOWN, OccupancyGrid
+from nav_algorithms.cells import OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.likelihood_field import distances
 from nav_algorithms.poses import invert, transform_points
 

@@ -16,7 +16,7 @@ from evaluation.film import LONGEST_GAP, FilmFile, fit, side_by_side
 from evaluation.house import Records, Watch
 from evaluation.navigate_score import Result
 from evaluation.picture import CAR, FLOOR, TEXT, Plan, bgr, lap_colour, legend, map_sheet, pixels
-from nav_algorithms.grid import FREE, OCCUPIED, OccupancyGrid
+from nav_algorithms.cells import FREE, OCCUPIED, OccupancyGrid
 from nav_algorithms.poses import compose, transform_points
 from trial_worlds.house import Ground
 

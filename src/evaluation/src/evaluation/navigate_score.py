@@ -14,7 +14,7 @@ from evaluation.house import Contact, Records
 from evaluation.map_agreement import MapAgreement, map_agreement
 from evaluation.report import table
 from evaluation.trajectory_error import TrajectoryError, trajectory_error
-from nav_algorithms.grid import FREE, UNKNOWN, OccupancyGrid
+from nav_algorithms.cells import FREE, UNKNOWN, OccupancyGrid
 from run_session.failure import RunError
 from trial_worlds.house import Ground, visible_walls
 

@@ -16,7 +16,15 @@ from run_session.records import check_keys, read_yaml
 
 FILE = "exercises.yaml"
 KEYS = ("title", "start", "solution", "check", "limits")
-CHECKS = {  # module of exercises.checks -> its limits, in SI units unless the name says otherwise
+MODULES = {  # of exercises.checks -> the functions that are checks
+    "files": ("bag", "link"),
+    "laws": ("chase", "halls", "pid", "stop"),
+    "nodes": ("action", "ending", "parameter", "radar", "switch", "wall"),
+    "pictures": ("lamp", "line", "mask"),
+    "planner": ("planner",),
+    "simulated": ("lane", "lap", "steering"),
+}
+CHECKS = {  # check -> its limits, in SI units unless the name says otherwise
     "action": ("least", "seconds"),
     "bag": ("messages", "period", "tolerance"),
     "chase": ("distance", "tolerance", "seconds"),

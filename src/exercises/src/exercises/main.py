@@ -12,7 +12,7 @@ from pathlib import Path
 import rospkg
 from node_basics.ending import interruptible
 
-from exercises.catalogue import Exercise, find_exercises
+from exercises.catalogue import MODULES, Exercise, find_exercises
 from exercises.errors import CannotCheck, Mistake, TimeUp
 from exercises.finding import Finding
 from exercises.program import line_in, said
@@ -92,9 +92,10 @@ def check(exercise: Exercise, file: Path | None = None) -> int:
 
 def findings(exercise: Exercise, file: Path) -> Iterator[Finding]:
     """The findings of the exercise's check on a file; Mistake if the learner's program fails."""
-    module = importlib.import_module(f"exercises.checks.{exercise.check}")
+    module = next(name for name, checks in MODULES.items() if exercise.check in checks)
+    check = getattr(importlib.import_module(f"exercises.checks.{module}"), exercise.check)
     try:
-        yield from module.look(file.resolve(), exercise.limits)
+        yield from check(file.resolve(), exercise.limits)
     except (CannotCheck, Mistake, RunError):
         raise
     except (Exception, SystemExit) as error:

@@ -16,7 +16,7 @@ from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Empty
 
 from nav_algorithms import poses, rays
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 from nav_nodes.messages import grid_message, pose_message, pose_of, transform_message
 
 CELLS = np.zeros((80, 120), np.int8)  # 6 m x 4 m

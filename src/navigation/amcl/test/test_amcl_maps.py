@@ -12,7 +12,7 @@ from nav_msgs.srv import SetMapRequest
 from amcl import maps
 from amcl.maps import MapSource, grid_in
 from amcl.node import AmclNode
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 from nav_nodes.messages import grid_message
 
 GOOD = grid_message(OccupancyGrid(np.zeros((2, 3), np.int8), 0.05, (0.0, 0.0)), "map",

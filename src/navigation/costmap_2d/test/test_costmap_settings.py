@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from costmap_2d import settings
-from costmap_2d.building import build_layer, change_layer
+from costmap_2d.costmap_ros import build_layer, change_layer
 from nav_algorithms.costmap.inflation import InflationLayer
 from nav_algorithms.costmap.obstacles import ObstacleLayer
 from nav_algorithms.costmap.static import StaticLayer

@@ -8,7 +8,7 @@ from geometry_msgs.msg import Quaternion, Transform, Vector3
 from sensor_msgs.msg import LaserScan
 
 from gmapping.mapper import TABLE, Mapper, ScanError, ranges_of, settings_from
-from nav_algorithms.grid import OCCUPIED
+from nav_algorithms.cells import OCCUPIED
 from nav_nodes.laser_mount import Mount
 from nav_nodes.parameters import ParameterError, load_table
 

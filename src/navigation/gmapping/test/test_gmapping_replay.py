@@ -12,7 +12,7 @@ from tf2_msgs.msg import TFMessage
 
 from gmapping.replay import main
 from map_server.map_files import read_map
-from nav_algorithms.grid import OCCUPIED
+from nav_algorithms.cells import OCCUPIED
 from nav_nodes.messages import transform_message
 
 HALF = 1.52  # m; the robot drives in a square room, from its middle

@@ -21,7 +21,7 @@ from rosgraph_msgs.msg import Clock
 from roslib.packages import find_node
 
 from map_server.map_files import read_map, write_map
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 
 LIMIT = 60.0  # s
 CELLS = np.random.default_rng(3).choice(np.array([-1, 0, 100], np.int8), (60, 90))

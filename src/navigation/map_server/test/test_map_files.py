@@ -10,7 +10,7 @@ import pytest
 from map_server import image, map_files
 from map_server.errors import MapFileError, MapImageError, MapMetadataError, MapMissingError
 from map_server.map_files import read_map, write_map
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 
 GOOD = {"image": "map.pgm", "resolution": "0.05", "origin": "[-1.0, -2.0, 0.0]", "negate": "0",
         "occupied_thresh": "0.65", "free_thresh": "0.196"}

@@ -13,7 +13,7 @@ from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import LaserScan
 
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 from nav_algorithms.poses import compose
 from nav_algorithms.rays import cast
 from nav_nodes.messages import grid_message, pose_message, transform_message

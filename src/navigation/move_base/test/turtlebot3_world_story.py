@@ -19,7 +19,7 @@ from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.msg import Odometry
 
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 from nav_nodes.messages import grid_message, pose_of, stamped_pose
 
 BEFORE, BEHIND = (-2.0, -0.5, 0.0), (-0.55, 0.55, 1.57)

@@ -10,7 +10,7 @@ import numpy as np
 import yaml
 
 from nav_algorithms import likelihood_field, poses, rays
-from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from nav_algorithms.cells import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.monte_carlo import Localisation
 from nav_algorithms.sensor_models import Scan
 

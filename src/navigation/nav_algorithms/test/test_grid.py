@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from nav_algorithms import poses, rays
-from nav_algorithms.grid import UNKNOWN, OccupancyGrid
+from nav_algorithms.cells import UNKNOWN, OccupancyGrid
 
 
 def test_angles_are_wrapped_to_the_half_open_circle():

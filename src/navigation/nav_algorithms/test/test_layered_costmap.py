@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from nav_algorithms.cells import OccupancyGrid
 from nav_algorithms.costmap.costs import FREE, INSCRIBED, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.costmap.inflation import InflationLayer, cost_table
 from nav_algorithms.costmap.layer import Bounds, Layer, combine, shifted
 from nav_algorithms.costmap.layered import LayeredCostmap
 from nav_algorithms.costmap.static import StaticLayer, costs_of
-from nav_algorithms.grid import OccupancyGrid
 
 HERE = np.zeros(3)
 SQUARE = np.array([[0.2, 0.2], [-0.2, 0.2], [-0.2, -0.2], [0.2, -0.2]])

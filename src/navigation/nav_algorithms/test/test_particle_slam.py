@@ -9,7 +9,7 @@ from defaults import of
 from slam_world import CELL, ORIGIN, RANGE_MAX, RING, RecordedDrive, drive, trajectory_error, walls
 
 from nav_algorithms import likelihood_field
-from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN
+from nav_algorithms.cells import FREE, OCCUPIED, UNKNOWN
 from nav_algorithms.particle_slam import ParticleSlam, SlamSettings
 
 SETTINGS = of(SlamSettings, particles=30, maxUrange=3.0, maxRange=RANGE_MAX - 0.01, minimumScore=50,

@@ -6,7 +6,7 @@ from defaults import of
 from slam_world import ANGLES, CELL, ORIGIN, PERIOD, RANGE_MAX, RING, drive, walls
 
 from nav_algorithms import likelihood_field, poses
-from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN
+from nav_algorithms.cells import FREE, OCCUPIED, UNKNOWN
 from nav_algorithms.scan_slam import ScanSlam, ScanSlamSettings
 
 FINE = {"map_size": 800, "map_resolution": 0.05, "map_update_distance_thresh": 0.1,

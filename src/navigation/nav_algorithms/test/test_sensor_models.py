@@ -8,7 +8,7 @@ from defaults import of
 from house import robust
 
 from nav_algorithms import likelihood_field
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 from nav_algorithms.sensor_models import (
     BEAM,
     FIELD,

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from nav_algorithms import poses
-from nav_algorithms.grid import FREE, OCCUPIED
+from nav_algorithms.cells import FREE, OCCUPIED
 from nav_algorithms.hit_maps import ABSENT, HITS, NEAR, HitMaps, value_at
 from nav_algorithms.map_rendering import MARGIN, MapRendering
-from nav_algorithms.pose_tree import PoseTree
-from nav_algorithms.slam_motion import STILL, StepSum
+from nav_algorithms.motion_models import STILL, StepSum
+from nav_algorithms.particle_slam import PoseTree
 from nav_algorithms.small_matrices import cholesky, solve_backwards, solve_forwards
 
 

@@ -11,7 +11,7 @@ from geometry_msgs.msg import Quaternion
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.srv import GetMapResponse, LoadMapResponse
 
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 from nav_nodes.messages import (
     LoadedMapAnswer,
     MapAnswer,

@@ -8,8 +8,7 @@ import tf2_py
 import tf2_ros
 from geometry_msgs.msg import TransformStamped
 
-from nav_nodes.tf_gaps import TfLink, known_links, weakest
-from nav_nodes.transforms import Transforms
+from nav_nodes.transforms import TfLink, Transforms, known_links, weakest
 
 LATE = 2.0  # s by which the odometry's transforms come after their stamps
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import rosgraph
 
-from bullet_sim_ros import log_bridge, node
+from bullet_sim_ros import node
 from bullet_sim_ros.node import open_world, parse
 from bullet_sim_ros.package_paths import open_resources
 from bullet_sim_ros.params import NodeParameters
@@ -118,7 +118,7 @@ def test_a_verbose_simulator_also_says_what_it_loads(monkeypatch, verbose, told)
                         said.append(text))
     before = core.level
     try:
-        log_bridge.forward_core_log(verbose)
+        node.forward_core_log(verbose)
         logging.getLogger("bullet_sim.formats").info("loading")
     finally:
         core.setLevel(before)

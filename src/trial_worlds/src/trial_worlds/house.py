@@ -15,10 +15,10 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.formats.loading import load_world
 from bullet_sim.formats.resources import Resources
 from bullet_sim.world import World
+from nav_algorithms.cells import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.costmap.costs import FREE as FREE_COST
 from nav_algorithms.costmap.costs import INSCRIBED, Costmap
 from nav_algorithms.global_planning import navfn
-from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.likelihood_field import distances
 from nav_algorithms.poses import wrap_angle
 from nav_algorithms.rays import cast

@@ -10,11 +10,35 @@ import rospy
 from rosgraph.names import is_legal_name
 from std_srvs.srv import Empty, EmptyResponse
 
-from turtlesim.parameters import declare_background, read_background
-from turtlesim.pond.canvas import SIDE
-from turtlesim.pond.pond import FIRST, TICK, Pond, PondError
+from turtlesim.pond.canvas import SIDE, Color
+from turtlesim.pond.pond import BACKGROUND, FIRST, TICK, Pond, PondError
 from turtlesim.srv import Kill, KillResponse, Spawn, SpawnResponse
 from turtlesim.turtle_interface import Inbox, TurtleInterface, require_finite
+
+_NAMES = ("~background_r", "~background_g", "~background_b")
+
+
+def declare_background() -> None:
+    """Put what is not set on the server, so that `rosparam list` shows it."""
+    for name, default in zip(_NAMES, BACKGROUND):
+        if not rospy.has_param(name):
+            rospy.set_param(name, default)
+
+
+def read_background() -> Color:
+    """A value that is no colour counts as not set, with one warning."""
+    red, green, blue = (_read(name, default) for name, default in zip(_NAMES, BACKGROUND))
+    return red, green, blue
+
+
+def _read(name: str, default: int) -> int:
+    value = rospy.get_param(name, default)
+    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= 255:
+        return value
+    rospy.logwarn("parameter %s must be a whole number from 0 to 255, not %r: %d is used",
+                  rospy.resolve_name(name), value, default)
+    return default
+
 
 FRAME_TICKS = 2  # a picture every second tick, 31 in a second
 

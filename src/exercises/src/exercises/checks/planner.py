@@ -38,19 +38,19 @@ def costmap(walls: tuple[tuple[slice, slice], ...]) -> Costmap:
 
 def plan(module, grid: Costmap) -> np.ndarray:
     """The path (N, 2), m; Mistake if the planner returns no list of poses."""
-    planner = part(module, "Planner()")()
-    planner.initialize("Planner", SimpleNamespace(snapshot=lambda: grid))
+    planned = part(module, "Planner()")()
+    planned.initialize("Planner", SimpleNamespace(snapshot=lambda: grid))
     poses = [PoseStamped(), PoseStamped()]
     for pose, (x, y) in zip(poses, (START, GOAL)):
         pose.header.frame_id, pose.pose.orientation.w = "map", 1.0
         pose.pose.position.x, pose.pose.position.y = x, y
-    answer = planner.make_plan(*poses)
+    answer = planned.make_plan(*poses)
     if not isinstance(answer, list) or not all(isinstance(p, PoseStamped) for p in answer):
         raise Mistake(f"{CALL} answered {str(answer)[:60]!r}, wanted a list of PoseStamped")
     return np.array([(p.pose.position.x, p.pose.position.y) for p in answer]).reshape(-1, 2)
 
 
-def look(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
+def planner(file: Path, limits: dict[str, float]) -> Iterator[Finding]:
     """A path without gaps and contacts, at low cost, not much longer; none if there is none."""
     module, grid = load(file), costmap((WALL,))
     path = plan(module, grid)

@@ -10,7 +10,7 @@ import rospy
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.srv import GetMap
 
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 from nav_nodes.messages import grid_of
 from nav_nodes.missing_data import MissingData
 

@@ -23,7 +23,7 @@ from amcl.outputs import Outputs
 from amcl.robot_frames import RobotFrames
 from amcl.settings import localisation_settings, sensor_settings, with_order
 from nav_algorithms import poses
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 from nav_algorithms.monte_carlo import Localisation, Step
 from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.missing_data import MissingData, TopicWatchdog, watch_clock

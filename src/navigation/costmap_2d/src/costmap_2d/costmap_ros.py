@@ -1,4 +1,4 @@
-"""One costmap of a node: upstream's Costmap2DROS."""
+"""One costmap of a node: upstream's Costmap2DROS, with its layers made from their settings."""
 
 from __future__ import annotations
 
@@ -11,16 +11,29 @@ from typing import Any
 import numpy as np
 import rospy
 
-from costmap_2d.building import build_layer, change_layer
 from costmap_2d.map_input import MapInput
 from costmap_2d.publishing import CostmapPublisher
 from costmap_2d.sensors import Sensors
-from costmap_2d.settings import TABLES, footprint_of, geometry_of, read_settings, table
+from costmap_2d.settings import (
+    INFLATION,
+    STATIC,
+    TABLES,
+    VOXEL,
+    LayerSettings,
+    footprint_of,
+    geometry_of,
+    read_settings,
+    table,
+)
 from costmap_2d.sources import MessageAge
 from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.costmap.footprint import circle, padded
+from nav_algorithms.costmap.inflation import InflationLayer
+from nav_algorithms.costmap.layer import Layer
 from nav_algorithms.costmap.layered import LayeredCostmap
+from nav_algorithms.costmap.obstacles import ObstacleLayer
 from nav_algorithms.costmap.static import StaticLayer
+from nav_algorithms.costmap.voxels import VoxelLayer, VoxelSettings
 from nav_algorithms.poses import transform_points
 from nav_nodes.missing_data import MissingData
 from nav_nodes.parameters import serve_changes
@@ -242,3 +255,40 @@ class CostmapROS:
         with self._lock:
             change_layer(layer, values)
             self._layered.write_all()
+
+
+def build_layer(settings: LayerSettings, rolling: bool) -> Layer:
+    """The layer that settings describe."""
+    values, name = settings.values, settings.name
+    if settings.kind == STATIC:
+        layer = StaticLayer(name, rolling, values["use_maximum"])
+    elif settings.kind == INFLATION:
+        layer = InflationLayer(name, values["inflation_radius"], values["cost_scaling_factor"],
+                               values["inflate_unknown"])
+    else:
+        shared = {"track_unknown": values["track_unknown_space"],
+                  "combination_method": values["combination_method"],
+                  "max_obstacle_height": values["max_obstacle_height"],
+                  "clears_footprint": values["footprint_clearing_enabled"]}
+        layer = (VoxelLayer(name, _voxels(values), **shared) if settings.kind == VOXEL
+                 else ObstacleLayer(name, **shared))
+    layer.enabled = values["enabled"]
+    return layer
+
+
+def change_layer(layer: Layer, values: dict[str, Any]) -> None:
+    """Applies the parameters that may change at run time; all cells must be written again then."""
+    layer.enabled = values["enabled"]
+    if isinstance(layer, InflationLayer):
+        layer.change(values["inflation_radius"], values["cost_scaling_factor"],
+                     values["inflate_unknown"], values["enabled"])
+    elif isinstance(layer, ObstacleLayer):
+        layer.combination_method = values["combination_method"]
+        layer.max_obstacle_height = values["max_obstacle_height"]
+        layer.clears_footprint = values["footprint_clearing_enabled"]
+    if isinstance(layer, VoxelLayer):
+        layer.change_settings(_voxels(values))
+
+
+def _voxels(values: dict[str, Any]) -> VoxelSettings:
+    return VoxelSettings(**{name: values[name] for name in VoxelSettings.__dataclass_fields__})

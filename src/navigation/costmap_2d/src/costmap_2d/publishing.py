@@ -11,9 +11,9 @@ from map_msgs.msg import OccupancyGridUpdate
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from rospy.numpy_msg import numpy_msg
 
+from nav_algorithms.cells import OccupancyGrid
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.costmap.layer import Window
-from nav_algorithms.grid import OccupancyGrid
 from nav_nodes.messages import grid_message
 
 Grid, Update = numpy_msg(OccupancyGridMessage), numpy_msg(OccupancyGridUpdate)

@@ -12,7 +12,7 @@ from map_server.errors import MapFileError
 from map_server.files import unexpanded
 from map_server.image import MapImage, read_image
 from map_server.metadata import MapMetadata, read_metadata
-from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
+from nav_algorithms.cells import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 
 WHITE, GREY, BLACK = 254, 205, 0  # values written for free, unknown and occupied cells
 

@@ -27,7 +27,6 @@ from move_base.plugin import settings_from, table
 from move_base.recoveries import load
 from move_base.services import Services
 from move_base.state_machine import Patience, State, StateMachine
-from move_base.status import keep_telling
 from move_base.watch import Watch
 from nav_algorithms.costmap.footprint import reach
 from nav_nodes.ignored import below, warn_of_ignored
@@ -36,6 +35,16 @@ from nav_nodes.missing_data import MissingData, watch_clock
 from nav_nodes.parameters import ParameterError, read_parameters, serve_changes
 from nav_nodes.program import init_node, spin
 from nav_nodes.transforms import Transforms
+
+
+def keep_telling(server: actionlib.SimpleActionServer) -> None:
+    """Call once, after the server's start: actionlib's own timer ends when the clock goes back."""
+    actions = server.action_server
+    if actions.status_timer is not None:
+        actions.status_timer.shutdown()
+        actions.status_timer = rospy.Timer(rospy.Duration(1.0 / actions.status_frequency),
+                                           actions.publish_status_async, reset=True)
+
 
 KILLED = "Aborting on the goal because the node has been killed"
 SLICE = 0.005  # s of wall time between two checks of the clock

@@ -1,8 +1,12 @@
-"""The geometry of a grid of cells, shared by maps and costmaps."""
+"""The geometry of a grid of cells, shared by maps and costmaps, and the map of all modules here."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+
+UNKNOWN, FREE, OCCUPIED = -1, 0, 100  # nav_msgs/OccupancyGrid; between them: probability, percent
 
 
 class Cells:
@@ -40,3 +44,21 @@ class Cells:
         """Which of the cells (row, column), (..., 2), are inside, bool (...)."""
         cells = np.asarray(cells)
         return ((cells >= 0) & (cells < self.cells.shape)).all(axis=-1)
+
+
+@dataclass(frozen=True)
+class OccupancyGrid(Cells):
+    """Cells in a plane; never changed in place once made.
+
+    `cells` is int8 (rows, columns), UNKNOWN, or FREE to OCCUPIED; row 0 has the lowest y and
+    column 0 the lowest x, as in nav_msgs/OccupancyGrid. `resolution` is in m per cell, `origin` the
+    (x, y), m, of the outer corner of cell (0, 0) in the map's frame, whose axes the cells follow.
+    """
+
+    cells: np.ndarray
+    resolution: float
+    origin: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        """Raises ValueError if cells or sizes make no valid map."""
+        self.check_geometry("map", np.int8)

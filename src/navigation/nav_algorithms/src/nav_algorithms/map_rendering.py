@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from nav_algorithms.cells import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.compiled import compiled
-from nav_algorithms.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from nav_algorithms.rays import count_between
 
 MARGIN = 2.0  # m; extra size of a grid that has to be enlarged

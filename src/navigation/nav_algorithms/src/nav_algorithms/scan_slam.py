@@ -14,7 +14,7 @@ import numpy as np
 
 from nav_algorithms import poses
 from nav_algorithms.beam_walls import holds
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 from nav_algorithms.hit_maps import HitMaps
 from nav_algorithms.map_rendering import MapRendering
 from nav_algorithms.scan_matching import refine, search

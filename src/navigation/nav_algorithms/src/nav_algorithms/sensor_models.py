@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from nav_algorithms import likelihood_field, poses
+from nav_algorithms.cells import FREE, OCCUPIED, OccupancyGrid
 from nav_algorithms.compiled import compiled
-from nav_algorithms.grid import FREE, OCCUPIED, OccupancyGrid
 from nav_algorithms.rays import cast
 
 BEAM, FIELD, FIELD_PROB = "beam", "likelihood_field", "likelihood_field_prob"

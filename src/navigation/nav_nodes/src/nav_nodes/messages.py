@@ -12,7 +12,7 @@ from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.srv import GetMapResponse, LoadMapResponse
 from rospy.numpy_msg import numpy_msg
 
-from nav_algorithms.grid import OccupancyGrid
+from nav_algorithms.cells import OccupancyGrid
 
 
 def yaw_of(q: Quaternion) -> float:

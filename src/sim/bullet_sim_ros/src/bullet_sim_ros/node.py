@@ -2,6 +2,7 @@
 
 import argparse
 import gc
+import logging
 import sys
 import time
 from collections.abc import Callable
@@ -22,7 +23,6 @@ from bullet_sim.rendering.renderer import NoRenderer
 from bullet_sim.world import World
 from bullet_sim_ros import loop, names, topic_faults
 from bullet_sim_ros.lockstep import split
-from bullet_sim_ros.log_bridge import forward_core_log
 from bullet_sim_ros.metrics import MetricsTopic
 from bullet_sim_ros.only_simulator import register
 from bullet_sim_ros.package_paths import open_resources
@@ -34,6 +34,19 @@ from bullet_sim_ros.shutdown import end_before_topics, end_by_signals, shut_down
 from bullet_sim_ros.simulation import Simulation
 from bullet_sim_ros.state_log import StateLog
 from bullet_sim_ros.state_topics import SceneTopic, StateTopics
+
+
+class _ToRosout(logging.Handler):
+    def emit(self, record: logging.LogRecord) -> None:
+        logging.getLogger("rosout").log(record.levelno, "%s", record.getMessage())
+
+
+def forward_core_log(verbose: bool) -> None:
+    """Forward it; to be called once, after init_node."""
+    core = logging.getLogger("bullet_sim")
+    core.setLevel(logging.INFO if verbose else logging.WARNING)
+    core.addHandler(_ToRosout())
+    core.propagate = False
 
 
 def open_network(simulation: Simulation, parameters: NodeParameters) -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from nav_algorithms.cells import OccupancyGrid
 from nav_algorithms.costmap.costs import FREE, LETHAL, UNKNOWN, Costmap
 from nav_algorithms.costmap.layer import MAXIMUM, Bounds, Layer, Window, combine
-from nav_algorithms.grid import OccupancyGrid
 from nav_algorithms.poses import transform_points
 
 
