@@ -7,15 +7,13 @@ import os
 import re
 import select
 import sys
-import termios
 import time
-import tty
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from dataclasses import dataclass
 
 import rospy
 from geometry_msgs.msg import Twist, TwistStamped
-from node_basics.ending import interruptible
+from node_basics.ending import interruptible, single_keys
 
 CTRL_C = "\x03"
 # One key: what function keys and arrows send (F1 is ESC O P, of which O alone would drive), or a
@@ -123,18 +121,6 @@ class CommandTopic:
             message = TwistStamped(twist=twist)
             message.header.stamp, message.header.frame_id = rospy.Time.now(), self._frame
         self._publisher.publish(message)
-
-
-@contextmanager
-def single_keys(terminal: int):
-    """Each key at once and unseen; whatever happens, the terminal is as before afterwards."""
-    before = termios.tcgetattr(terminal)
-    try:
-        tty.setcbreak(terminal)
-        yield
-    finally:
-        with suppress(termios.error):  # the window may be closed: then nothing is to be put back
-            termios.tcsetattr(terminal, termios.TCSADRAIN, before)
 
 
 def read_keys(terminal: int, wait: float) -> list[str]:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import os
 import re
 import select
-import termios
 import time
-import tty
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+
+from node_basics.ending import single_keys
 
 from car_control.keys import DRIVING_KEYS, QUIT_KEY, STOP_KEY, TerminalKeys
 
@@ -20,18 +19,6 @@ TEXT = (
 PERIOD = 0.02  # s
 ESCAPE = re.compile(r"\x1b(?:[\[O][0-9;]*(.)?)?")  # an arrow's letter, or another key's sequence
 ARROWS = {"A": "w", "B": "s", "C": "d", "D": "a"}
-
-
-@contextmanager
-def single_keys(terminal: int) -> Iterator[None]:
-    """Keys arrive at once and without echo; afterwards the terminal is always restored."""
-    before = termios.tcgetattr(terminal)
-    try:
-        tty.setcbreak(terminal)
-        yield
-    finally:
-        with suppress(termios.error):  # if the terminal was closed, there is nothing to restore
-            termios.tcsetattr(terminal, termios.TCSADRAIN, before)
 
 
 def keys_in(text: str) -> str:

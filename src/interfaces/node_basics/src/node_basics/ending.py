@@ -1,10 +1,15 @@
-"""How programs end at Ctrl-C, SIGTERM (roslaunch, kill) and SIGHUP (a closed terminal)."""
+"""How programs end at Ctrl-C, SIGTERM (roslaunch, kill) and SIGHUP (a closed terminal).
+
+And what they leave of a terminal whose keys they have read.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import signal
+import termios
 import threading
+import tty
 from collections.abc import Callable, Iterator
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -26,6 +31,18 @@ def interruptible() -> Iterator[None]:
     for number in SIGNALS:
         signal.signal(number, interrupt)
     yield
+
+
+@contextlib.contextmanager
+def single_keys(terminal: int) -> Iterator[None]:
+    """Each key at once and unseen; whatever happens, the terminal is as before afterwards."""
+    before = termios.tcgetattr(terminal)
+    try:
+        tty.setcbreak(terminal)
+        yield
+    finally:
+        with contextlib.suppress(termios.error):  # it may be closed: nothing is to be put back
+            termios.tcsetattr(terminal, termios.TCSADRAIN, before)
 
 
 def at_signals(ask: Callable[[], None], limit: float, force: Callable[[int], object],
