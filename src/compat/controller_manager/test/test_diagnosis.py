@@ -1,6 +1,7 @@
-"""The lines that name the cause of a failure."""
+"""The command line of spawner, and the lines that name the cause of a failure."""
 
-from controller_manager import client, diagnosis
+import pytest
+from controller_manager import client, configuration, diagnosis, spawning
 from controller_manager_msgs.msg import ControllerState, HardwareInterfaceResources
 
 
@@ -74,3 +75,28 @@ def test_no_manager():
     assert "A controller manager answers in: /arm, /racecar " in client.absence(
         service, ["/arm", "/racecar"])
     assert "no controller manager in any namespace" in client.absence(service, [])
+
+
+def test_upstreams_options():
+    options = spawning.arguments().parse_args(["--namespace=/rrbot", "a", "b"])
+    assert (options.namespace, options.controllers, options.timeout) == ("/rrbot", ["a", "b"], 30)
+    assert (options.stopped, options.wait_for, options.no_timeout, options.shutdown_timeout) \
+        == (False, None, False, None)
+    options = spawning.arguments().parse_args(
+        "--stopped --wait-for go --timeout 0 --no-timeout --shutdown-timeout 3 a".split())
+    assert (options.stopped, options.wait_for, options.timeout, options.no_timeout) \
+        == (True, "go", 0.0, True)
+
+
+def test_a_controller_is_needed(capsys):
+    with pytest.raises(SystemExit) as ended:
+        spawning.arguments().parse_args([])
+    assert ended.value.code == 2
+    assert "controller" in capsys.readouterr().err
+
+
+def test_what_is_a_file(tmp_path):
+    (tmp_path / "arm").write_text("")
+    assert configuration.is_file_name(str(tmp_path / "arm"))
+    assert configuration.is_file_name("none.yaml")
+    assert not configuration.is_file_name("joint_state_controller")

@@ -1,8 +1,11 @@
-"""The fake robot's arithmetic: straight, on the spot, round a circle."""
+"""The fake robot: its arithmetic, and its launch file as roslaunch's own loader reads it."""
 
 import math
+from pathlib import Path
 
 import pytest
+from roslaunch.config import ROSLaunchConfig
+from roslaunch.xmlloader import XmlLoader
 from turtlebot3_fake.wheels import Wheels, roll, separation, velocity, wheel_speeds
 
 
@@ -36,3 +39,22 @@ def test_a_circle_ends_where_it_began():
                                           ("waffle_pi", 0.287), ("other", 0.16)])
 def test_separations_are_the_plugins(model, apart):
     assert separation(model) == apart
+
+
+FILE = Path(__file__).resolve().parents[1] / "launch" / "turtlebot3_fake.launch"
+
+
+def rviz(*arguments):
+    """The node of that name as (package, type), or None."""
+    config = ROSLaunchConfig()
+    XmlLoader().load(str(FILE), config, argv=[str(FILE), *arguments], verbose=False)
+    return next(((node.package, node.type) for node in config.nodes if node.name == "rviz"), None)
+
+
+@pytest.mark.parametrize("display, shown", [
+    (":0", ("rviz", "rviz")), ("", ("turtlebot3_bringup", "no_screen")),
+])
+def test_rviz_needs_a_screen(monkeypatch, display, shown):
+    monkeypatch.setenv("DISPLAY", display)
+    assert rviz() == shown
+    assert rviz("open_rviz:=false") is None

@@ -1,10 +1,12 @@
-"""How turtlesim_node ends when its topics are closed while it publishes."""
+"""How turtlesim_node ends while it publishes, and its window without Tk; needs no master."""
 
 import runpy
+import sys
 from pathlib import Path
 
 import pytest
 import rospy
+from turtlesim.window import NoScreen, Window
 
 PROGRAM = Path(__file__).resolve().parents[1] / "nodes" / "turtlesim_node"
 
@@ -22,3 +24,9 @@ def test_closed_topics_are_a_fault_only_while_it_runs(monkeypatch, ending):
     else:
         with pytest.raises(rospy.ROSException, match="closed topic"):
             runpy.run_path(str(PROGRAM), run_name="__main__")
+
+
+def test_without_tk_it_is_said_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "tkinter", None)  # importing it is an ImportError now
+    with pytest.raises(NoScreen, match="sudo apt-get install python3-tk"):
+        Window()
