@@ -1,4 +1,4 @@
-"""Puts the package and usercustomize.py on the workspace's Python path."""
+"""Puts the package on the workspace's Python path; CMakeLists.txt does so with usercustomize.py."""
 
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
@@ -6,8 +6,6 @@ from setuptools import setup
 setup(
     **generate_distutils_setup(
         packages=["headless_highgui"],
-        py_modules=["usercustomize"],
-        # catkin asks for a module's folder by the module's name, setuptools by "".
-        package_dir={"": "src", "usercustomize": "src"},
+        package_dir={"": "src"},
     )
 )

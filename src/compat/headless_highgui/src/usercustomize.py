@@ -117,6 +117,9 @@ def run_hidden():
 
 def choose_language():
     """Let our programs print in the language of the locale, if terminal_language is there."""
+    names = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG")
+    if not any(os.environ.get(name, "").startswith("zh") for name in names):
+        return  # every Python starts with this; the package's import would take half of its time
     try:
         from terminal_language.wanted import start
     except ImportError:  # it is off, by a CATKIN_IGNORE
@@ -126,14 +129,19 @@ def choose_language():
 
 def end_quietly():
     """Let Ctrl-C while a program of ours imports end it without a traceback, as later on."""
-    try:
-        from terminal_language.wanted import is_ours
-    except ImportError:
-        return
-    if is_ours(sys.orig_argv):
-        shown = sys.excepthook
-        sys.excepthook = (
-            lambda kind, *rest: None if kind is KeyboardInterrupt else shown(kind, *rest))
+    shown = sys.excepthook
+
+    def show(kind, *rest):
+        if kind is KeyboardInterrupt:
+            try:
+                from terminal_language.wanted import is_ours
+            except ImportError:
+                return shown(kind, *rest)
+            if is_ours(sys.orig_argv):
+                return None
+        return shown(kind, *rest)
+
+    sys.excepthook = show
 
 
 choose_language()

@@ -1,4 +1,4 @@
-"""catkin_find's answers to rosrun are Debian's, and come without reading every package.xml."""
+"""What rosrun and roscore ask of catkin_find and rosversion: Debian's answers, without Python."""
 
 import os
 import shutil
@@ -56,9 +56,22 @@ def test_the_answer_is_debians(terminal, words):
         assert wanted[1].count("\n") >= 1
 
 
-def test_rosrun_asks_ours_which_starts_no_python(terminal):
-    found = shutil.which("catkin_find")
-    assert Path(found).resolve() == ROOT / "src/compat/debian_programs/bin/catkin_find"
-    asked = subprocess.run(["bash", "-x", found, *ROSRUN[0], "both"], env=terminal, text=True,
+@pytest.mark.parametrize("words", [["-d"], ["roslaunch"], ["rospy"], ["no_package"], []],
+                         ids=" ".join)
+@pytest.mark.parametrize("distro", ["Debian", "", None])
+def test_a_version_is_debians(words, distro):
+    terminal = {name: text for name, text in os.environ.items() if name != "ROS_DISTRO"}
+    terminal |= {} if distro is None else {"ROS_DISTRO": distro}
+    wanted = answer("/usr/bin/rosversion", words, terminal)
+    assert answer(shutil.which("rosversion"), words, terminal) == wanted
+
+
+@pytest.mark.parametrize(("program", "words"), [
+    ("catkin_find", [*ROSRUN[0], "both"]), ("catkin_find", [*ROSRUN[1], "both"]),
+    ("rosversion", ["-d"]), ("rosversion", ["roslaunch"])], ids=str)
+def test_ours_is_asked_and_starts_no_python(terminal, program, words):
+    found = shutil.which(program)
+    assert Path(found).resolve() == ROOT / "src/compat/debian_programs/bin" / program
+    asked = subprocess.run(["bash", "-x", found, *words], env=terminal, text=True,
                            stderr=subprocess.PIPE, stdout=subprocess.DEVNULL).stderr
-    assert "rospack find both" in asked and DEBIANS not in asked
+    assert asked and f"/usr/bin/{program}" not in asked
