@@ -162,7 +162,7 @@ def test_each_shell_can_source_it(built, shell):
 @pytest.mark.parametrize("built", ["catkin_make"], indirect=True)
 def test_the_workspace_installs(built):
     """Left-out targets have install rules, too."""
-    done = in_terminal(f"cd {built[0]} && catkin_make -j1 --no-color install",
+    done = in_terminal(f"cd {built[0]} && {BUILDS['catkin_make']} install",
                        ROOT / "devel/setup.bash", limit=400)
     assert done.returncode == 0, done.stdout[-3000:]
     done = in_terminal("rosrun shape_gazebo beside; roslaunch --files shape_gazebo world.launch",

@@ -29,7 +29,7 @@ class Watch:
     @classmethod
     def find_spec(cls, name, _path=None, _target=None):
         if name == "numpy" and cls.without_numpy == get_ident():
-            raise ModuleNotFoundError("genpy.message begins without it", name=name)
+            raise ModuleNotFoundError(name=name)
         if name == "rosclean" and os.path.basename(sys.argv[0]) in LAUNCHERS:
             take_own_distutils()
         if name not in cls.waited_for:
