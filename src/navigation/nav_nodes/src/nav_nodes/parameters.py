@@ -18,8 +18,7 @@ from typing import Any
 
 import rospy
 import yaml
-from dynamic_reconfigure.server import Server
-from node_basics.reconfigure import Entry, EntryServer
+from node_basics.reconfigure import Entry, EntryServer, Server
 
 KINDS = {"bool": bool, "int": int, "double": float, "str": str, "list": list}
 
