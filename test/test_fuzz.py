@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from evaluation.command_line import run_program
 from run_session.failure import RunError
 
 pytestmark = pytest.mark.processes
@@ -79,23 +80,37 @@ def test_each_kind_of_fault_is_noticed(fuzz, read, fault):
     assert found is None if fault is None else fault in found
 
 
+@pytest.fixture
+def command(monkeypatch):
+    monkeypatch.syspath_prepend(str(FUZZ))
+    import fuzz
+    return fuzz
+
+
 @pytest.mark.parametrize("words, said", [
     (["--target", "none"], "no target 'none' (TARGET=); there are: urdf, "),
     (["--minutes", "soon"], "--minutes (MINUTES=) must be a number of minutes"),
     (["--minutes=-1"], "--minutes (MINUTES=) must be a number of minutes"),
     (["--input", "nowhere"], "INPUT= needs the TARGET="),
     (["--target", "stl", "--input", "nowhere"], "nowhere cannot be read")])
-def test_a_mistake_is_one_line(words, said):
-    done = subprocess.run([sys.executable, FUZZ / "fuzz.py", *words], capture_output=True,
-                          text=True, timeout=120)
-    assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1
+def test_a_mistake_is_one_line(command, capsys, words, said):
+    try:
+        code = run_program("fuzz", lambda: command.main(words))
+    except SystemExit as end:  # of argparse
+        code = end.code
+    shown = capsys.readouterr().err
+    assert code == 2 and said in shown and shown.count("\n") == 1
 
 
-def test_a_folder_that_can_hold_no_finding_is_one_line(tmp_path, monkeypatch):
+def test_the_program_ends_with_its_code():
+    """Once as a process: it takes seconds to import all that it spoils the input of."""
+    done = subprocess.run([sys.executable, FUZZ / "fuzz.py", "--input", "nowhere"], text=True,
+                          capture_output=True, timeout=120)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+
+
+def test_a_folder_that_can_hold_no_finding_is_one_line(command, tmp_path, monkeypatch):
     (tmp_path / "out").write_text("")
-    monkeypatch.syspath_prepend(str(FUZZ))
-    import fuzz as command
-
     monkeypatch.setattr(command, "OUT", tmp_path / "out")
     with pytest.raises(RunError, match=f"^nothing can be kept in {tmp_path / 'out'}: File exists$"):
         command.main(["--target", "ogre", "--minutes", "0.001"])
