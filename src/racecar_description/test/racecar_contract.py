@@ -6,25 +6,17 @@ import unittest
 import numpy as np
 import rospy
 import tf2_ros
+from acceptance_car import LIMIT, wait_until
 from gazebo_msgs.srv import GetModelState
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo, Image, Imu, LaserScan
 
-LIMIT = 60.0  # s, wall
 START = (0.0, 0.0)  # m
 FOCAL_PX = 1280 / (2 * math.tan(1.3963 / 2))
 
 
 def one(topic, kind):
     return rospy.wait_for_message(topic, kind, LIMIT)
-
-
-def wait_until(condition, what):
-    for _ in range(round(LIMIT / 0.02)):
-        if condition():
-            return
-        rospy.rostime.wallsleep(0.02)
-    raise AssertionError(f"not within {LIMIT} s: {what}")
 
 
 def collect(topic, kind, count):

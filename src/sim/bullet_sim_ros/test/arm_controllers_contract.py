@@ -7,6 +7,7 @@ import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
+from contracts import LIMIT, Manager, pass_time, wait_until
 from control_msgs.msg import (
     FollowJointTrajectoryAction,
     FollowJointTrajectoryGoal,
@@ -17,7 +18,6 @@ from control_msgs.msg import (
     JointTrajectoryControllerState,
 )
 from control_msgs.srv import QueryTrajectoryState
-from controller_clients import LIMIT, Manager, pass_time, wait_until
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 ARMS = ("effort_arm", "velocity_arm", "position_arm")

@@ -7,9 +7,8 @@ import unittest
 import rospy
 import rostest
 import tf2_ros
-from control_bench import Rosout
+from contracts import Manager, Rosout, pass_time, truth, turned, wait_until, yaw_of
 from control_msgs.msg import JointTrajectoryControllerState
-from controller_clients import Manager, pass_time, truth, turned, wait_until, yaw_of
 from dynamic_reconfigure.client import Client
 from geometry_msgs.msg import Twist, TwistStamped, Vector3
 from nav_msgs.msg import Odometry

@@ -3,26 +3,17 @@
 import unittest
 
 import rospy
+from contracts import LIMIT, wait_until
 from gazebo_msgs.srv import DeleteModel, GetModelState, SpawnModel
 from geometry_msgs.msg import Pose, Twist
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import LaserScan
 
-LIMIT = 60.0  # s, wall
-
 
 def service(name, kind):
     rospy.wait_for_service(f"/gazebo/{name}", LIMIT)
     return rospy.ServiceProxy(f"/gazebo/{name}", kind)
-
-
-def wait_until(condition, what):
-    for _ in range(round(LIMIT / 0.05)):
-        if condition():
-            return
-        rospy.rostime.wallsleep(0.05)
-    raise AssertionError(f"not within {LIMIT} s: {what}")
 
 
 def topics():

@@ -4,7 +4,7 @@ import subprocess
 import unittest
 
 import rospy
-from control_bench import BEST_EFFORT, LIMIT, STRICT, Manager, Rosout, call, wait_until
+from contracts import BEST_EFFORT, LIMIT, STRICT, Manager, Rosout, call, wait_until
 from control_msgs.msg import JointControllerState, PidState
 from controller_manager_msgs.srv import ListControllerTypes, ReloadControllerLibraries
 from gazebo_msgs.srv import DeleteModel, SpawnModel
@@ -26,7 +26,7 @@ class RosControl(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.rosout = Rosout()
-        cls.manager = Manager()
+        cls.manager = Manager("bench")
         cls.spawn()
 
     @classmethod
@@ -57,7 +57,7 @@ class RosControl(unittest.TestCase):
 
     def start(self, *names):
         names = ["joint_state_controller", *names]
-        self.assertEqual(self.manager.load(*names), [True] * len(names), self.rosout.lines)
+        self.assertTrue(all(map(self.manager.load, names)), self.rosout.lines)
         self.assertTrue(self.manager.switch(start=names), self.rosout.lines)
         wait_until(lambda: self.joints, "joint states")
 
@@ -95,21 +95,21 @@ class RosControl(unittest.TestCase):
         # conforms: controller_manager services/switch_controller
         # conforms: controller_manager services/list_controllers
         manager, name = self.manager, "left_velocity"
-        self.assertEqual(manager.load(name), [True])
-        self.assertEqual(manager.load(name), [False])
+        self.assertTrue(manager.load(name))
+        self.assertFalse(manager.load(name))
         self.assertEqual(manager.states(), {name: "initialized"})
         self.assertTrue(manager.switch(start=[name]))
         self.assertEqual(manager.states(), {name: "running"})
         claimed = manager.list()[0].claimed_resources
         self.assertEqual(claimed[0].hardware_interface, "hardware_interface::EffortJointInterface")
         self.assertEqual(claimed[0].resources, ["left_wheel"])
-        self.assertEqual(manager.unload(name), [False])
+        self.assertFalse(manager.unload(name))
         self.rosout.wait_for("Could not unload controller", "because it is still running")
         self.assertTrue(manager.switch(stop=[name]))
         self.assertEqual(manager.states(), {name: "stopped"})
-        self.assertEqual(manager.unload(name), [True])
+        self.assertTrue(manager.unload(name))
         self.assertNotIn(f"/bench/{name}/command", dict(rospy.get_published_topics()))
-        self.assertEqual(manager.unload(name), [False])
+        self.assertFalse(manager.unload(name))
 
     def test_what_cannot_be_loaded_says_why(self):
         for name, *parts in (
@@ -121,7 +121,7 @@ class RosControl(unittest.TestCase):
             ("no_gains", "/bench/no_gains/pid/p is not set"),
             ("no_rate", "Parameter 'publish_rate' not set"),
         ):
-            self.assertEqual(self.manager.load(name), [False], name)
+            self.assertFalse(self.manager.load(name), name)
             self.rosout.wait_for(f"'{name}'", *parts)
         self.assertEqual(self.manager.list(), [])
 
@@ -129,7 +129,8 @@ class RosControl(unittest.TestCase):
         # conforms: controller_manager services/reload_controller_libraries
         manager = self.manager
         self.start("left_velocity")
-        manager.load("left_effort", "both_efforts")
+        for name in ("left_effort", "both_efforts"):
+            manager.load(name)
         for strictness in (STRICT, BEST_EFFORT):
             self.assertFalse(manager.switch(start=["both_efforts"], strictness=strictness))
         self.rosout.wait_for("resource conflict", "'left_wheel' is claimed by 'left_velocity'",

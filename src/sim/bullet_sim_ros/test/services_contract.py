@@ -5,6 +5,7 @@ import unittest
 
 import dynamic_reconfigure.client
 import rospy
+from contracts import LIMIT, wait_until
 from gazebo_msgs.msg import LinkStates, ModelState, ModelStates
 from gazebo_msgs.srv import (
     DeleteModel,
@@ -31,21 +32,11 @@ ARM = """<robot name="arm"><link name="base">{i}</link><link name="tip">{i}</lin
 <limit lower="-2" upper="2" effort="1" velocity="1"/></joint></robot>""".format(
     i='<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
       "</inertial>")
-LIMIT = 60.0  # s, wall
 
 
 def service(name, kind):
     rospy.wait_for_service(f"/gazebo/{name}", LIMIT)
     return rospy.ServiceProxy(f"/gazebo/{name}", kind)
-
-
-def wait_until(condition, what):
-    """Poll on the wall clock: simulated time may stand still."""
-    for _ in range(round(LIMIT / 0.05)):
-        if condition():
-            return
-        rospy.rostime.wallsleep(0.05)
-    raise AssertionError(f"not within {LIMIT} s: {what}")
 
 
 class Services(unittest.TestCase):

@@ -1,4 +1,4 @@
-"""The topic `command` of a controller: what it refuses, and how often it says so."""
+"""Controllers' parameters from the server, and what their topic `command` refuses and says."""
 
 import logging
 from types import SimpleNamespace
@@ -9,6 +9,11 @@ from std_msgs.msg import Float64, Float64MultiArray
 from bullet_sim.control.controllers.commands import Commands
 from bullet_sim.control.parameters import ControllerParameters
 from bullet_sim.errors import PluginError
+from bullet_sim_ros import params
+from bullet_sim_ros.control import (
+    controllers,  # noqa: F401  (they register)
+    registry,
+)
 from bullet_sim_ros.control.controllers import command_topic
 
 
@@ -60,3 +65,25 @@ def test_a_negative_time_out_is_an_error_that_names_the_parameter():
     assert command_topic.command_timeout(PluginContext(command_timeout=0.2)) == 0.2
     with pytest.raises(PluginError, match=r"/r/c/command_timeout is -0\.2, .*not negative"):
         command_topic.command_timeout(PluginContext(command_timeout=-0.2))
+
+
+def test_who_did_not_load_the_file_is_told_how(monkeypatch):
+    monkeypatch.setattr(params, "below", {"/r/c": {"joint": "a"}}.get)
+    p = params.of_controllers("/r/c")
+    assert p.text("joint") == "a"
+    for read, above in ((lambda: p.number("pid/d"), "/r"),
+                        (lambda: p.group("pid").number("d"), "/r/c"),
+                        (lambda: params.of_controllers("/c").text("joint"), "/")):
+        with pytest.raises(PluginError, match=rf"is not set; was the controller's YAML file loaded "
+                                              rf"there \(rosparam load FILE {above}\)\?$"):
+            read()
+
+
+def test_every_registered_type_has_what_a_controller_needs():
+    assert len(registry.types()) >= 11
+    for kind in registry.types():
+        made = registry.find(kind)
+        assert issubclass(made, registry.Controller), kind
+        assert made.__doc__, kind
+    assert registry.hint("effort_controllers/JointPositonController") == (
+        " (did you mean effort_controllers/JointPositionController?)")

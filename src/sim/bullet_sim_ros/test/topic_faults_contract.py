@@ -4,7 +4,7 @@ import subprocess
 import unittest
 
 import rospy
-from control_bench import Rosout
+from contracts import Rosout
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import Image, LaserScan
 

@@ -6,13 +6,13 @@ import unittest
 import numpy as np
 import rospy
 import tf2_ros
+from contracts import LIMIT, wait_until
 from gazebo_msgs.srv import GetModelState
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo, Image, Imu, JointState, LaserScan, PointCloud2
 from std_srvs.srv import Empty
 
-LIMIT = 60.0  # s, wall
 FOCAL_PX = 1920 / (2 * math.tan(1.3439 / 2))
 
 
@@ -27,14 +27,6 @@ def collect(topic, kind, count):
     wait_until(lambda: len(found) >= count, f"{count} messages on {topic}")
     subscriber.unregister()
     return found[:count]
-
-
-def wait_until(condition, what):
-    for _ in range(round(LIMIT / 0.02)):
-        if condition():
-            return
-        rospy.rostime.wallsleep(0.02)
-    raise AssertionError(f"not within {LIMIT} s: {what}")
 
 
 def rate_hz(stamps):

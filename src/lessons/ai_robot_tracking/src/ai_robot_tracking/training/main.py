@@ -87,8 +87,7 @@ def _whole(text: str, least: int) -> int:
 
 # Each command imports its own modules: only `train` needs those of PyTorch.
 def _draw(given: argparse.Namespace) -> int:
-    from ai_robot_tracking.training.dataset import TRAIN_FIRST
-    from ai_robot_tracking.training.draw_sets import draw_set
+    from ai_robot_tracking.training.dataset import TRAIN_FIRST, draw_set
 
     draw_set(given.folder, "train", TRAIN_FIRST, given.pictures, given.jobs)
     return DONE

@@ -14,8 +14,7 @@ from ai_robot_tracking.detection.decoding import Detections
 from ai_robot_tracking.detection.messages import annotated
 from ai_robot_tracking.detection.model import Model, ModelError
 from ai_robot_tracking.training import CLASSES, TrainingError
-from ai_robot_tracking.training.dataset import TEST_FIRST
-from ai_robot_tracking.training.draw_sets import open_drawing
+from ai_robot_tracking.training.dataset import TEST_FIRST, open_drawing
 from ai_robot_tracking.training.drawing import Picture, draw_picture
 from ai_robot_tracking.training.scoring import (
     CONFIDENCE,
