@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from exercises.catalogue import find_exercises, read_exercises
-from exercises.errors import CannotCheck
+from exercises.finding import CannotCheck
 
 GOOD = {"title": "A wall", "start": "a.py", "solution": "b.py", "check": "switch",
         "limits": {"seconds": 1.0}}

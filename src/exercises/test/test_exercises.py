@@ -14,7 +14,7 @@ import yaml
 
 from exercises import node
 from exercises.catalogue import find_exercises
-from exercises.errors import Mistake
+from exercises.finding import Mistake
 from exercises.main import main
 
 ROOT = Path(__file__).resolve().parents[3]

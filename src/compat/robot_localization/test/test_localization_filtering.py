@@ -26,8 +26,7 @@ from robot_localization.filtering.measurements import (
     velocity_between,
     without_gravity,
 )
-from robot_localization.settings import frame, number
-from robot_localization.sources import Source
+from robot_localization.sources import Source, frame, number
 
 ANGLES = (0.3, -0.4, 2.0)
 VX, YAW, YAW_RATE = 6, 5, 11

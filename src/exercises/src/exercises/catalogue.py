@@ -11,7 +11,7 @@ from typing import Any
 
 import rospkg
 
-from exercises.errors import CannotCheck
+from exercises.finding import CannotCheck
 from run_session.records import check_keys, read_yaml
 
 FILE = "exercises.yaml"

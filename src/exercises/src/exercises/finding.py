@@ -1,4 +1,4 @@
-"""What a check observed, and what it expected."""
+"""What a check observed, and what it expected; the exceptions that end one early."""
 
 from __future__ import annotations
 
@@ -38,3 +38,15 @@ def near(what: str, value: float, wanted: float, tolerance: float, unit: str = "
 def holds(what: str, seen: str, wanted: str, passed: bool) -> Finding:
     """Any other finding, in words."""
     return Finding(what, seen, wanted, bool(passed))
+
+
+class CannotCheck(Exception):
+    """The check could not run: one line with what, where, and what to type next."""
+
+
+class TimeUp(BaseException):
+    """The check takes too long; a learner's `except Exception` does not catch it."""
+
+
+class Mistake(Exception):
+    """An error in the learner's program that the check cannot continue after; one line."""

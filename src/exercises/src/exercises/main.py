@@ -13,8 +13,7 @@ import rospkg
 from node_basics.ending import interruptible
 
 from exercises.catalogue import MODULES, Exercise, find_exercises
-from exercises.errors import CannotCheck, Mistake, TimeUp
-from exercises.finding import Finding
+from exercises.finding import CannotCheck, Finding, Mistake, TimeUp
 from exercises.program import line_in, said
 from run_session.failure import RunError
 

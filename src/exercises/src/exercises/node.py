@@ -11,7 +11,7 @@ from pathlib import Path
 
 import rospy
 
-from exercises.errors import Mistake
+from exercises.finding import Mistake
 from exercises.program import compiled
 from run_session.launch import Launched, describe_exit
 from run_session.processes import Child, Family

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from exercises.errors import CannotCheck, Mistake
+from exercises.finding import CannotCheck, Mistake
 
 
 def compiled(file: Path) -> CodeType:

@@ -30,8 +30,7 @@ from robot_localization.filtering.ekf import (
     quaternion_of,
 )
 from robot_localization.filtering.measurements import BadConfig, Filter, square
-from robot_localization.settings import frame, number
-from robot_localization.sources import Frames, check_stamp, open_sources
+from robot_localization.sources import Frames, check_stamp, frame, number, open_sources
 
 NOT_HERE = ("use_control", "smooth_lagged_data", "dynamic_process_noise_covariance",
             "disabled_at_startup")

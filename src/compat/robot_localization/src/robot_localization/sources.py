@@ -1,4 +1,4 @@
-"""The topics odomN, imuN, poseN and twistN: messages in, measurements out."""
+"""The topics odomN, imuN, poseN and twistN: messages in, measurements out; their parameters."""
 
 import numpy as np
 import rospy
@@ -16,6 +16,7 @@ from robot_localization.filtering.ekf import (
     pose_matrix,
 )
 from robot_localization.filtering.measurements import (
+    BadConfig,
     chosen,
     moved_twist,
     of_block,
@@ -24,7 +25,21 @@ from robot_localization.filtering.measurements import (
     velocity_between,
     without_gravity,
 )
-from robot_localization.settings import number
+
+
+def number(name, default):
+    """Raises BadConfig if it is none."""
+    value = rospy.get_param(f"~{name}", default)
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise BadConfig(f"{name} is {value!r}; it has to be a number") from None
+
+
+def frame(name, default):
+    """Without the slash that tf had before it."""
+    return str(rospy.get_param(f"~{name}", default)).lstrip("/")
+
 
 KINDS = {"odom": Odometry, "imu": Imu, "pose": PoseWithCovarianceStamped,
          "twist": TwistWithCovarianceStamped}

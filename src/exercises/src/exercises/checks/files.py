@@ -16,8 +16,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.formats.urdf.tree import read_tree
 from bullet_sim.formats.xml_text import read_xml_file
 from bullet_sim.pose import quaternion_from_rpy, rotate
-from exercises.errors import CannotCheck, Mistake
-from exercises.finding import Finding, holds, near
+from exercises.finding import CannotCheck, Finding, Mistake, holds, near
 from exercises.program import compiled
 
 NAME = "test.bag"

@@ -21,8 +21,7 @@ from learning_action.msg import AddIntsAction, AddIntsGoal
 from std_srvs.srv import SetBool
 from turtlesim.msg import Pose
 
-from exercises.errors import Mistake
-from exercises.finding import Finding, holds, near
+from exercises.finding import Finding, Mistake, holds, near
 from exercises.node import PAUSE, START, running
 
 ALONG = 5.5  # m, x of its start, and its y

@@ -8,8 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from exercises.errors import Mistake
-from exercises.finding import Finding, at_least, at_most, holds
+from exercises.finding import Finding, Mistake, at_least, at_most, holds
 from exercises.program import load, mask_of, numbers, part
 
 SIZE = 120, 90  # px, rows and columns of each stripe

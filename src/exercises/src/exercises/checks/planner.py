@@ -10,8 +10,7 @@ import cv2
 import numpy as np
 from geometry_msgs.msg import PoseStamped
 
-from exercises.errors import Mistake
-from exercises.finding import Finding, at_most, holds
+from exercises.finding import Finding, Mistake, at_most, holds
 from exercises.program import load, part
 from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, Costmap
 

@@ -31,8 +31,7 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.world import World
-from exercises.errors import CannotCheck, Mistake
-from exercises.finding import Finding, at_least, at_most, holds, near
+from exercises.finding import CannotCheck, Finding, Mistake, at_least, at_most, holds, near
 from exercises.program import load, mask_of, numbers, part
 
 LAP_SIZE = 320, 180  # px

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from nav_demo.network.findings import Finding, is_loopback
-from nav_demo.network.settings import split_uri
+from nav_demo.network.settings import Finding, is_loopback, split_uri
 
 SLOW_MS = 100.0   # median of the calls
 CLOCKS_APART = 2  # s; an HTTP date has a resolution of 1 s

@@ -1,4 +1,4 @@
-"""Checks this terminal's ROS_MASTER_URI, ROS_HOSTNAME and ROS_IP."""
+"""Checks this terminal's ROS_MASTER_URI, ROS_HOSTNAME and ROS_IP; what a fault is told by."""
 
 from __future__ import annotations
 
@@ -7,11 +7,25 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from urllib.parse import urlsplit
 
-from nav_demo.network.findings import Finding, is_loopback
-
 MASTER_PORT = 11311
 ADDRESS = re.compile(r"\d{1,3}(\.\d{1,3}){3}")
 SAMPLE = f"export ROS_MASTER_URI=http://localhost:{MASTER_PORT}"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """`wrong`: the error; `remedy`: what to type, and on which machine if not on this one."""
+
+    wrong: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return f"WRONG  {self.wrong}. Type: {self.remedy}"
+
+
+def is_loopback(address: str) -> bool:
+    """Whether an IPv4 address leads every machine to itself."""
+    return address.startswith("127.")
 
 
 @dataclass(frozen=True)
