@@ -2,9 +2,11 @@
 
 import math
 from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from ackermann_msgs.msg import AckermannDriveStamped
 from geometry_msgs.msg import Quaternion
 
@@ -114,7 +116,15 @@ def test_the_usual_recoveries(loaded):
         "conservative_reset", "rotate_recovery", "aggressive_reset", "rotate_recovery"]
     assert [name for name, _ in loaded(clearing_rotation_allowed=False)] == [
         "conservative_reset", "aggressive_reset"]
-    assert "escape" in [name for name, _ in loaded(command_type="ackermann")]
+    assert [name for name, _ in loaded(command_type="ackermann")] == [
+        "conservative_reset", "escape", "aggressive_reset", "escape"]
+
+
+def test_with_robust_yaml_the_robot_leaves_what_it_touches_before_it_turns(loaded):
+    robust = yaml.safe_load((Path(__file__).parents[1] / "config/robust.yaml").read_text())
+    assert [name for name, _ in loaded(**robust)] == [
+        "conservative_reset", "escape", "rotate_recovery",
+        "aggressive_reset", "escape", "rotate_recovery"]
 
 
 def test_a_list_of_ones_own(loaded):

@@ -161,10 +161,11 @@ class Escape(Recovery):
                                    * self.context.frequency)
         way = self._command.trajectory
         at = int(np.hypot(*(way[:, :2] - pose[:2]).T).argmin())
-        outline = footprints.shrunk_to_fit(snapshot, costmap.footprint, pose)
+        outlines = footprints.to_leave_with(snapshot, costmap.footprint, pose)
         self._steps_left -= 1
-        if (at == len(way) - 1 or not self._steps_left or outline is None
-                or (footprints.costs(snapshot, outline, way[at + 1:]) < 0).any()):
+        if at == len(way) - 1 or not self._steps_left or not any(
+                (footprints.costs(snapshot, outline, way[at + 1:]) >= 0).all()
+                for outline in outlines):
             self.context.base.stop()
             return True
         self.context.base.drive(self._command.velocity)
@@ -179,15 +180,16 @@ RECOVERIES = {
 }
 DEFAULT = (("conservative_reset", ClearCostmap), ("rotate_recovery", Rotate),
            ("aggressive_reset", ClearCostmap), ("rotate_recovery", Rotate))
-DEFAULT_OF_A_CAR = (("conservative_reset", ClearCostmap), ("escape", Escape),
-                    ("aggressive_reset", ClearCostmap), ("escape", Escape))
+OURS = (("conservative_reset", ClearCostmap), ("escape", Escape), ("rotate_recovery", Rotate),
+        ("aggressive_reset", ClearCostmap), ("escape", Escape), ("rotate_recovery", Rotate))
 
 
 def load(values: dict[str, Any], circumscribed_radius: float) -> list[Recovery]:
     """The behaviours of `~recovery_behaviors`, or the default ones; `values` are move_base's.
 
-    A car cannot turn on the spot: its default ones have Escape instead. Raises ParameterError for
-    invalid parameters of theirs and for unknown types.
+    Ours have Escape before each turn, for a robot that touches something and cannot turn; a car,
+    which never can, has them without the turns. Raises ParameterError for invalid parameters of
+    theirs and for unknown types.
     """
     where = rospy.resolve_name("~recovery_behaviors")
     wanted = values["recovery_behaviors"]
@@ -196,9 +198,10 @@ def load(values: dict[str, Any], circumscribed_radius: float) -> list[Recovery]:
             entry["name"]) for entry in wanted]
     rospy.set_param("~conservative_reset/reset_distance", values["conservative_reset_dist"])
     rospy.set_param("~aggressive_reset/reset_distance", 4 * circumscribed_radius)
-    usual = DEFAULT_OF_A_CAR if values["command_type"] == "ackermann" else DEFAULT
-    return [kind(name) for name, kind in usual
-            if kind is not Rotate or values["clearing_rotation_allowed"]]
+    is_car = values["command_type"] == "ackermann"
+    turns = values["clearing_rotation_allowed"] and not is_car
+    return [kind(name) for name, kind in (OURS if is_car or values["escape_allowed"] else DEFAULT)
+            if kind is not Rotate or turns]
 
 
 def _is_list_of_behaviours(wanted: list) -> bool:

@@ -65,24 +65,34 @@ def escape(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
     command holds for the length of its trajectory.
     """
     pose = np.asarray(pose, float)
-    footprint = footprints.shrunk_to_fit(costmap, np.asarray(footprint, float), pose)
-    if footprint is None:
-        return None
     bends = [0.0]
     if settings.minimum_turning_radius > 0.0:
         bends += [1.0 / settings.minimum_turning_radius, -1.0 / settings.minimum_turning_radius]
+    arcs = [(sign, bend, arc_of(pose, sign * distance, bend, 0.5 * costmap.resolution))
+            for distance in (settings.distance, 0.5 * settings.distance)
+            for sign in (-1.0, 1.0) for bend in bends]
+    both = len(arcs) // 2
     radii = footprints.free_radii(costmap)
-    for distance in (settings.distance, 0.5 * settings.distance):
-        best, widest = None, 0.0
-        for sign in (-1.0, 1.0):
-            for bend in bends:
-                arc = arc_of(pose, sign * distance, bend, 0.5 * costmap.resolution)
-                if (footprints.costs(costmap, footprint, arc) < 0).any():
-                    continue
-                space = radii[tuple(costmap.cells_of(arc[-1, :2]))]
-                if space > widest + 1e-9:
-                    speed = sign * settings.speed
-                    best, widest = Command(speed, 0.0, speed * bend, arc), space
-        if best is not None:
-            return best
+    for outline in footprints.to_leave_with(costmap, np.asarray(footprint, float), pose):
+        for some in (arcs[:both], arcs[both:]):
+            best = _roomiest(costmap, radii, outline, some)
+            if best is not None:
+                sign, bend, arc = best
+                speed = sign * settings.speed
+                return Command(speed, 0.0, speed * bend, arc)
     return None
+
+
+def _roomiest(costmap: Costmap, radii: np.ndarray, outline: np.ndarray,
+              arcs: list[tuple[float, float, np.ndarray]]
+              ) -> tuple[float, float, np.ndarray] | None:
+    """Of the arcs (sign, bend, poses) that are free, the one that ends farthest from obstacles."""
+    best, widest = None, 0.0
+    for found in arcs:
+        arc = found[2]
+        if (footprints.costs(costmap, outline, arc) < 0).any():
+            continue
+        space = radii[tuple(costmap.cells_of(arc[-1, :2]))]
+        if space > widest + 1e-9:
+            best, widest = found, space
+    return best

@@ -7,6 +7,7 @@ three corners mean a round robot, as large as the costmap's inscribed radius.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numba
@@ -18,6 +19,8 @@ from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
 
 COLLISION, ON_UNKNOWN, OUTSIDE = -1, -2, -3  # the "costs" of base_local_planner's world model
 CIRCLE_CORNERS = 16
+SMALLEST = 0.6  # of a footprint, to fit beside an obstacle
+FIT_STEP, LEAVE_STEP = 0.02, 0.1
 
 
 def circle(radius: float) -> np.ndarray:
@@ -105,12 +108,35 @@ def shrunk_to_fit(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray) -> 
     An obstacle makes its whole cell lethal, so a robot close to one may seem to touch it. With this
     footprint it may leave, but come no closer. None: the robot is in the obstacle.
     """
-    for scale in np.arange(1.0, 0.59, -0.02):
+    return next(shrinking(costmap, footprint, pose, FIT_STEP), None)
+
+
+def shrinking(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
+              step: float) -> Iterator[np.ndarray]:
+    """The free ones among the footprint and smaller ones, by `step` each, down to 0.6 of it."""
+    for scale in np.arange(1.0, SMALLEST - 1e-9, -step):
         if costs(costmap, scale * footprint, pose)[0] >= 0:
-            return np.ascontiguousarray(scale * footprint)
+            yield np.ascontiguousarray(scale * footprint)
         if len(footprint) < 3:
-            return None
-    return None
+            return
+
+
+def to_leave_with(costmap: Costmap, footprint: np.ndarray,
+                  pose: np.ndarray) -> Iterator[np.ndarray]:
+    """Footprints to try one after the other until one can move: that of `shrunk_to_fit`, and
+    smaller ones if an obstacle is within a cell of the whole one.
+
+    Where a robot stands, the obstacle layer frees the cells below it, but not those next to them:
+    beside a wall it seems to fit, and to touch with whatever it does.
+    """
+    fitting = shrunk_to_fit(costmap, footprint, pose)
+    if fitting is None:
+        return
+    yield fitting
+    if costs(costmap, padded(footprint, costmap.resolution), pose)[0] < 0:
+        for smaller in shrinking(costmap, footprint, pose, LEAVE_STEP):
+            if reach(smaller) < reach(fitting) - 1e-9:
+                yield smaller
 
 
 @compiled("i8(u1[:,::1], f8, f8)")
