@@ -1,7 +1,8 @@
 """Which tests cover which rows of the interface table, and their results.
 
-A comment in a test names what it covers: `# conforms: ROW/TAG, ROW`. After a run of the tests
-`python3 scripts/conformance.py` prints the table with each row's tests and whether they passed.
+A comment in a test names what it covers: `# conforms: ROW/TAG, ROW`; `ROW/each` is all its tags.
+After a run of the tests `python3 scripts/conformance.py` prints the table with each row's tests and
+whether they passed.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import xml.etree.ElementTree as ET
 from collections import defaultdict
 from pathlib import Path
 
-from bullet_sim_ros.interface import APPROXIMATED, WORKS, Section, read_interface
+from bullet_sim_ros.interface import APPROXIMATED, WORKS, Section, read_interface, rows_by_name
 
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "out" / "test"
@@ -25,14 +26,18 @@ FAILED, NOT_RUN, PASSED = "FAILED", "not run", "ok"
 def covered() -> dict[str, set[str]]:
     """Names of rows and tags, each with the test functions that cover it."""
     found: dict[str, set[str]] = defaultdict(set)
+    rows = rows_by_name(read_interface())
     for path in sorted(ROOT.glob("src/**/test/**/*.py")):
         function = ""
         for line in path.read_text(encoding="utf-8").splitlines():
             if begun := FUNCTION.match(line):
                 function = begun[1]
             elif says := CONFORMS.match(line):
-                for name in says[1].split(","):
-                    found[name.strip()].add(function)
+                for name in map(str.strip, says[1].split(",")):
+                    row = name.removesuffix("/each")
+                    tags = () if row == name else rows[row].tags
+                    for each in [f"{row}/{tag}" for tag in tags] or [name]:
+                        found[each].add(function)
     return found
 
 

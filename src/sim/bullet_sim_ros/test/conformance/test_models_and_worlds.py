@@ -65,95 +65,13 @@ def colliding_box(bench, model) -> np.ndarray:
     return np.concatenate([np.min(least, axis=0), np.max(greatest, axis=0)])
 
 
-def test_barriers_are_spawned_from_the_database(bench):
-    # conforms: models: barriers/jersey_barrier
-    # conforms: models: barriers/drc_practice_orange_jersey_barrier
-    # conforms: models: barriers/drc_practice_white_jersey_barrier
-    # conforms: models: barriers/construction_cone, models: barriers/construction_barrel
-    # conforms: models: barriers/grey_wall, models: barriers/mud_box
-    # conforms: models: barriers/asphalt_plane, models: barriers/brick_box_3x1x3
-    # conforms: models: barriers/cinder_block, models: barriers/cinder_block_2
-    # conforms: models: barriers/cinder_block_wide, models: barriers/drc_practice_2x4
-    # conforms: models: barriers/drc_practice_2x6, models: barriers/drc_practice_4x4x20
-    # conforms: models: barriers/drc_practice_4x4x40, models: barriers/drc_practice_base_4x4
-    # conforms: models: barriers/drc_practice_base_4x8, models: barriers/drc_practice_block_wall
-    # conforms: models: barriers/drc_practice_blue_cylinder
-    # conforms: models: barriers/drc_practice_yellow_parking_block
-    # conforms: models: barriers/drc_practice_wheel_valve
-    # conforms: models: barriers/drc_practice_wheel_valve_large
-    # conforms: models: barriers/drc_practice_truss, models: barriers/nist_maze_wall_120
-    # conforms: models: barriers/nist_maze_wall_240, models: barriers/nist_simple_ramp_120
-    # conforms: models: barriers/nist_elevated_floor_120, models: barriers/nist_stairs_120
-    # conforms: models: barriers/nist_fiducial_barrel
-    spawn_all(bench, "barriers")
-
-
-def test_buildings_are_spawned_from_the_database(bench):
-    # conforms: models: buildings/house_1, models: buildings/house_2, models: buildings/house_3
-    # conforms: models: buildings/gas_station, models: buildings/fast_food
-    # conforms: models: buildings/grocery_store, models: buildings/thrift_shop
-    # conforms: models: buildings/salon, models: buildings/post_office
-    # conforms: models: buildings/law_office, models: buildings/police_station
-    # conforms: models: buildings/fire_station, models: buildings/school
-    # conforms: models: buildings/apartment, models: buildings/office_building
-    # conforms: models: buildings/radio_tower, models: buildings/water_tower
-    # conforms: models: buildings/parking_garage, models: buildings/cafe
-    # conforms: models: buildings/willowgarage
-    spawn_all(bench, "buildings")
-
-
-def test_household_are_spawned_from_the_database(bench):
-    # conforms: models: household/beer, models: household/coke_can, models: household/plastic_cup
-    # conforms: models: household/bowl, models: household/saucepan, models: household/hammer
-    # conforms: models: household/cordless_drill, models: household/bookshelf
-    # conforms: models: household/cabinet, models: household/cafe_table, models: household/table
-    # conforms: models: household/table_marble, models: household/chair01
-    # conforms: models: household/cardboard_box, models: household/grey_tote
-    # conforms: models: household/first_2015_trash_can, models: household/trash_bin
-    # conforms: models: household/person_standing, models: household/person_walking
-    # conforms: models: household/door_handle
-    # conforms: models: household/monkey_wrench, models: household/disk_part
-    spawn_all(bench, "household")
-
-
-def test_markings_are_spawned_from_the_database(bench):
-    # conforms: models: markings/checkerboard, models: markings/checkerboard_plane
-    # conforms: models: markings/number1, models: markings/number2, models: markings/number3
-    # conforms: models: markings/number4, models: markings/number5, models: markings/number6
-    # conforms: models: markings/number7, models: markings/number8, models: markings/number9
-    # conforms: models: markings/robocup14_spl_field, models: markings/robocup14_spl_goal
-    spawn_all(bench, "markings")
-
-
-def test_shapes_are_spawned_from_the_database(bench):
-    # conforms: models: shapes/box, models: shapes/sphere, models: shapes/cylinder
-    # conforms: models: shapes/unit_box, models: shapes/unit_sphere, models: shapes/unit_cylinder
-    # conforms: models: shapes/cube_20k, models: shapes/wood_cube_2_5cm
-    # conforms: models: shapes/wood_cube_5cm, models: shapes/wood_cube_7_5cm
-    # conforms: models: shapes/wood_cube_10cm, models: shapes/bowling_cube, models: shapes/block
-    # conforms: models: shapes/wooden_board, models: shapes/cricket_ball
-    # conforms: models: shapes/robocup_spl_ball, models: shapes/robocup_3Dsim_ball
-    # conforms: models: shapes/marble_1_5cm, models: shapes/stone_10_2_5_1_25cm
-    spawn_all(bench, "shapes")
-
-
-def test_street_are_spawned_from_the_database(bench):
-    # conforms: models: street/fire_hydrant, models: street/dumpster, models: street/lamp_post
-    # conforms: models: street/stop_sign, models: street/speed_limit_sign, models: street/mailbox
-    # conforms: models: street/postbox, models: street/telephone_pole, models: street/bus_stop
-    # conforms: models: street/oak_tree, models: street/pine_tree, models: street/hatchback
-    # conforms: models: street/hatchback_red, models: street/hatchback_blue, models: street/suv
-    # conforms: models: street/pickup, models: street/bus, models: street/ambulance
-    spawn_all(bench, "street")
-
-
-def test_robots_and_sensors_are_spawned_from_the_database(bench):
-    # conforms: models: robots/pioneer2dx, models: robots/create, models: robots/simple_arm
-    # conforms: models: robots/double_pendulum_with_base, models: robots/hinged_door
-    # conforms: models: robots/hokuyo, models: robots/kinect, models: robots/camera
-    # conforms: models: robots/depth_camera, models: robots/pioneer2at
-    # conforms: models: robots/drc_practice_angled_barrier_45
-    spawn_all(bench, "robots")
+@pytest.mark.parametrize("theme", [name.removeprefix(PREFIX) for name in TABLE
+                                   if name.startswith(PREFIX)])
+def test_models_are_spawned_from_the_database(bench, theme):
+    # conforms: models: barriers/each, models: buildings/each, models: household/each
+    # conforms: models: markings/each, models: shapes/each, models: street/each
+    # conforms: models: robots/each
+    spawn_all(bench, theme)
 
 
 def test_ground_and_sun_come_with_the_world(bench):

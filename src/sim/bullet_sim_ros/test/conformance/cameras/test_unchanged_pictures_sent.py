@@ -117,7 +117,7 @@ def test_points_that_nobody_wants_are_forgotten(bench, drawn, made):
 
 
 def test_noise_is_added_to_each(bench, drawn, made):
-    # conforms: sdf sensor/camera/noise
+    # conforms: sdf sensor/camera/noise/stddev
     noise = "<noise><type>gaussian</type><mean>0</mean><stddev>0.05</stddev></noise>"
     (messages,) = begin(bench, drawn, eye(CAMERA, camera=SMALL + noise), "/eye/image_raw")
     bench.run(1.0)
