@@ -87,11 +87,13 @@ class _Canvas:
 
     def paint(self, cover: np.ndarray, colour: tuple[int, int, int]) -> None:
         """Blend a colour into the texture."""
-        self.image[cover == 255] = colour
-        edge = (cover > 0) & (cover < 255)
-        share = cover[edge][:, None].astype(np.uint16)
-        mixed = self.image[edge] * (255 - share) + np.array(colour, np.uint16) * share
-        self.image[edge] = (mixed + 127) // 255
+        pixels, at = self.image.reshape(-1, 3), np.flatnonzero(cover)
+        share = cover.reshape(-1)[at]
+        pixels[at[share == 255]] = colour
+        edge = share < 255
+        at, share = at[edge], share[edge][:, None].astype(np.uint16)
+        mixed = pixels[at] * (255 - share) + np.array(colour, np.uint16) * share
+        pixels[at] = (mixed + 127) // 255
 
     def _empty(self) -> np.ndarray:
         height, width = self.image.shape[:2]

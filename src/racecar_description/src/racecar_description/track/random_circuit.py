@@ -84,24 +84,21 @@ def _points(random: Random, room: Room, count: int) -> list[tuple[float, float]]
 
 def _untangled(points: list[tuple[float, float]]) -> list[int]:
     """A closed tour without crossings that starts with the first two points (2-opt)."""
+    apart = [[math.dist(one, other) for other in points] for one in points]
     order = list(range(len(points)))
     improved = True
     while improved:
         improved = False
         for i in range(1, len(order) - 1):
             for j in range(i + 1, len(order)):
-                after = order[(j + 1) % len(order)]
-                old = _apart(points, order[i], order[i + 1]) if i + 1 <= j else 0.0
-                old = _apart(points, order[i], order[i + 1]) + _apart(points, order[j], after)
-                new = _apart(points, order[i], order[j]) + _apart(points, order[i + 1], after)
+                begin, following, end, after = (
+                    order[i], order[i + 1], order[j], order[(j + 1) % len(order)])
+                old = apart[begin][following] + apart[end][after]
+                new = apart[begin][end] + apart[following][after]
                 if new < old - 1e-9:
                     order[i + 1 : j + 1] = order[i + 1 : j + 1][::-1]
                     improved = True
     return order
-
-
-def _apart(points: list[tuple[float, float]], i: int, j: int) -> float:
-    return math.dist(points[i], points[j])
 
 
 def _corners(points: list[tuple[float, float]], room: Room) -> list[Corner] | None:
