@@ -112,3 +112,31 @@ def test_what_ends_by_itself_says_how(start, tmp_path, text, status, said):
     assert process.wait(60) == status
     assert process.said().endswith(said)
     assert ("Traceback" in process.said()) == (text == FAILING)
+
+
+PEAKS = """
+import sys
+import numpy as np
+{begin}
+def resident():
+    return int(open("/proc/self/statm").read().split()[1]) * 4096 / 2**20
+def peak(mebibytes):
+    arrays = [np.ones(int(mebibytes * 2**20), np.uint8) for _ in range(int(60 / mebibytes))]
+    return np.ones(3000, np.uint8)  # stays, above them
+before, kept = resident(), []
+for number in range(30):
+    kept.append(peak((15, 3, 0.5)[number % 3]))
+print(resident() - before)
+"""
+
+
+@pytest.mark.parametrize("begin, least, most", [
+    ("from nav_nodes.program import give_memory_back; give_memory_back()", -5, 5),
+    ("", 50, 70)])
+def test_memory_of_a_peak_is_given_back(begin, least, most):
+    """In the workspace's environment it is kept, once, by a program that does not say otherwise."""
+    done = subprocess.run(
+        [sys.executable, "-c", PEAKS.format(begin=begin)], capture_output=True, text=True,
+        check=True, env={**os.environ, "MALLOC_MMAP_THRESHOLD_": str(1 << 25),
+                         "MALLOC_TRIM_THRESHOLD_": str(1 << 26)})
+    assert least < float(done.stdout) < most

@@ -150,7 +150,9 @@ class HitMaps:
 
     def _grow_pool(self, more: int) -> None:
         old = len(self.pool)
-        self.pool = np.concatenate((self.pool, np.zeros((more, PATCH, PATCH, 4), np.float32)))
+        pool = np.zeros((old + more, PATCH, PATCH, 4), np.float32)  # no memory until it is used
+        pool[:old] = self.pool
+        self.pool = pool
         self._owners = np.concatenate((self._owners, np.zeros(more, np.int32)))
         free = self._free[:self._free_count[0]]
         self._free = np.zeros(old + more, np.int32)

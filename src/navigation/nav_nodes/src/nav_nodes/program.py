@@ -8,6 +8,7 @@ happens while signals are already handled.
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import importlib
 import os
@@ -17,6 +18,9 @@ import threading
 import traceback
 from typing import NoReturn
 
+# MALLOC_TRIM_THRESHOLD_ and MALLOC_MMAP_THRESHOLD_ of the environment, for GNU's mallopt.
+_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
+_LARGE = 1 << 17  # bytes; what the C library begins with if nobody says otherwise
 LIMIT = 0.5  # s from the signal until the process exits, even if something still hangs
 
 _told: list[int] = []         # the signals received, in order
@@ -31,6 +35,7 @@ def run(module: str) -> NoReturn:
     the status is then still main's. If main does not return in time, or has no node yet, the
     status is 128 + the signal, as in a shell for a process that was killed.
     """
+    give_memory_back()
     reading, writing = os.pipe()
     os.set_blocking(writing, False)
     signal.set_wakeup_fd(writing, warn_on_full_buffer=False)  # also while C code runs
@@ -53,6 +58,18 @@ def run(module: str) -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     os._exit(status)  # Python's own exit waits for threads, and a second for Numba's objects
+
+
+def give_memory_back() -> None:
+    """Let the C library give freed arrays back to the system at once.
+
+    The workspace's environment lets it keep 64 MiB, for programs that take images apart: a peak of
+    that size would stay for ever. Costs a planner a millisecond a plan.
+    """
+    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)  # not every C library has it
+    if mallopt is not None:
+        mallopt(_MMAP_THRESHOLD, _LARGE)
+        mallopt(_TRIM_THRESHOLD, _LARGE)
 
 
 def init_node(name: str) -> None:
