@@ -4,6 +4,6 @@
 cd "$root"
 rm -rf .venv .setup build devel install out/test .pytest_cache .ruff_cache .catkin_workspace __pycache__
 rm -rf src/sim/bullet_sim/src/bullet_sim/data/models src/compat/turtlebot3_gazebo/worlds
-find src/compat/turtlebot3_gazebo/models -mindepth 1 -maxdepth 1 ! -name turtlebot3_world -exec rm -rf {} +
+for model in src/compat/turtlebot3_gazebo/models/*; do [ "${model##*/}" = turtlebot3_world ] || rm -rf "$model"; done
 [ ! -L src/CMakeLists.txt ] || rm -f src/CMakeLists.txt
 find src test scripts -name __pycache__ -type d -prune -exec rm -rf {} +
