@@ -1,9 +1,9 @@
 """Python runs this file at its start: it amends a few modules when a script imports them.
 
-cv2 gets its windows, Tk a line for want of a screen, some modules get the names that they had
-when a script was written, and rospy's subscribers say so when their simulator has ended. A
-roslaunch that a program of ours refuses ends with one line; each begins without setuptools, and
-a program of rospy without NumPy and catkin unless it asks for them.
+cv2 gets its windows, cv_bridge a faster swap of colours, Tk a line for want of a screen, some
+modules get the names that they had when a script was written, and rospy's subscribers say so when
+their simulator has ended. A roslaunch that a program of ours refuses ends with one line; each
+begins without setuptools, and a program of rospy without NumPy and catkin unless it asks for them.
 Programs of ours print in the language of the locale, and end at Ctrl-C without a traceback.
 """
 
@@ -15,8 +15,9 @@ from _thread import get_ident
 from importlib.machinery import PathFinder
 
 LATER = "catkin.find_in_workspaces"
-AMENDED = {LATER, "cv2", "genpy.message", "joint_state_publisher", "numpy", "roslaunch.loader",
-           "rospy.topics", "tkinter", "yaml"}
+BRIDGE = "cv_bridge.boost.cv_bridge_boost"
+AMENDED = {LATER, BRIDGE, "cv2", "genpy.message", "joint_state_publisher", "numpy",
+           "roslaunch.loader", "rospy.topics", "tkinter", "yaml"}
 LAUNCHERS = {"check", "roslaunch", "roscore", "rostest"}
 
 
@@ -52,8 +53,8 @@ class Watch:
         finally:
             if module.__name__ == "genpy.message":
                 cls.without_numpy = None
-        for amend in (put_old_names_back, give_windows, tell_of_the_end, end_refused_launch,
-                      let_messages_hold_numbers_of_numpy):
+        for amend in (put_old_names_back, give_windows, hasten_cv_bridge, tell_of_the_end,
+                      end_refused_launch, let_messages_hold_numbers_of_numpy):
             try:
                 amend(module)
             except Exception as error:  # a script that needs none of it must not fail here
@@ -102,6 +103,13 @@ def give_windows(module):
         from headless_highgui.hook import amend_tkinter, install
 
         (install if module.__name__ == "cv2" else amend_tkinter)(module)
+
+
+def hasten_cv_bridge(module):
+    if module.__name__ == BRIDGE:
+        from headless_highgui.hook import amend_cv_bridge
+
+        amend_cv_bridge(module)
 
 
 def tell_of_the_end(module):

@@ -234,8 +234,9 @@ def test_python_without_cv2_loads_nothing_more():
 
 def test_a_module_is_watched_for_once():
     code = "import cv2; from usercustomize import Watch; print(sorted(Watch.waited_for))"
-    waited_for = ("['catkin.find_in_workspaces', 'genpy.message', 'joint_state_publisher', "
-                  "'roslaunch.loader', 'rospy.topics', 'tkinter', 'yaml']")
+    waited_for = ("['catkin.find_in_workspaces', 'cv_bridge.boost.cv_bridge_boost', "
+                  "'genpy.message', 'joint_state_publisher', 'roslaunch.loader', 'rospy.topics', "
+                  "'tkinter', 'yaml']")
     assert run_python(code, {"DISPLAY": ""}).stdout.strip() == waited_for
 
 
@@ -315,3 +316,55 @@ def test_who_imports_the_parser_of_packages_has_all_of_it():
             "find_in_workspaces\nprint(found.get_workspaces()[-1], hasattr(found, 'nothing'), "
             "find_in_workspaces(['share'], 'roscpp'))")
     assert run_python(code).stdout == "/usr False ['/usr/share/roscpp']\n"
+
+
+BRIDGE = """
+import numpy as np
+from cv_bridge import CvBridge
+from cv_bridge.boost import cv_bridge_boost as boost
+from sensor_msgs.msg import Image
+print("theirs", type(boost.cvtColor2).__module__ != "builtins")
+random = np.random.default_rng(1)
+for encoding, channels, kind in (("rgb8", 3, "u1"), ("bgr8", 3, "u1"), ("mono8", 1, "u1"),
+                                 ("rgba8", 4, "u1"), ("rgb16", 3, "u2"), ("bgr16", 3, "u2")):
+    pixels = random.integers(0, 256, (5, 7, channels)).astype(kind)
+    msg = Image(height=5, width=7, encoding=encoding, step=pixels.nbytes // 5,
+                data=pixels.tobytes())
+    for wanted in ("bgr8", "rgb8", "mono8", "passthrough"):
+        found = CvBridge().imgmsg_to_cv2(msg, wanted)
+        print(encoding, wanted, found.dtype, found.shape, found.flags.writeable, found.tobytes())
+try:
+    CvBridge().imgmsg_to_cv2(msg, "no such encoding")
+except Exception as error:
+    print(type(error).__name__, error)
+"""
+
+
+def test_cv_bridge_converts_as_without_us():
+    """To the last bit, whatever the encodings; and where it swaps red and blue, OpenCV does it."""
+    path = os.environ["PYTHONPATH"].split(os.pathsep)
+    ours = run_python(BRIDGE, path=(SOURCE, LANGUAGE, *path))
+    plain = run_python(BRIDGE, env={"PYTHONNOUSERSITE": "1"},
+                       path=[each for each in path if not (pathlib.Path(each)
+                                                           / "usercustomize.py").exists()])
+    for done in (ours, plain):
+        assert done.returncode == 0, done.stderr
+    assert ours.stdout.startswith("theirs False") and plain.stdout.startswith("theirs True")
+    assert ours.stdout.splitlines()[1:] == plain.stdout.splitlines()[1:]
+
+
+def test_only_red_and_blue_of_eight_bits_are_swapped_by_opencv(monkeypatch):
+    asked = []
+    boost = types.SimpleNamespace(cvtColor2=lambda *given: asked.append(given[1:]))
+    monkeypatch.setitem(sys.modules, "cv2", types.SimpleNamespace(
+        COLOR_RGB2BGR=4, cvtColor=lambda image, _code: image[..., ::-1]))
+    hook.amend_cv_bridge(boost)
+    image = np.arange(24, dtype=np.uint8).reshape(2, 4, 3)
+    for pair in (("rgb8", "bgr8"), ("bgr8", "rgb8")):
+        assert np.array_equal(boost.cvtColor2(image, *pair), image[..., ::-1])
+    assert not asked
+    for other, *pair in ((image, "rgb8", "mono8"), (image, "rgb8", "rgb8"),
+                         (image.astype(np.uint16), "rgb8", "bgr8"), (image[..., 0], "rgb8", "bgr8"),
+                         (image[:0], "rgb8", "bgr8"), (image[..., :2], "rgb8", "bgr8")):
+        boost.cvtColor2(other, *pair)
+    assert len(asked) == 6
