@@ -1,11 +1,16 @@
 """Image messages as JPEG: every encoding that cameras and windows send, sizes, and bad ones."""
 
+import io
+from types import SimpleNamespace
+
 import cv2
 import numpy as np
 import pytest
+import rospy
 from cv_bridge import CvBridge
 from sensor_msgs.msg import CompressedImage, Image
-from sim_viewer.images import to_jpeg
+from sim_viewer import images
+from sim_viewer.images import Stream, to_jpeg
 from sim_viewer.registry import Refused
 
 ORANGE = (0, 128, 255)  # BGR
@@ -111,3 +116,32 @@ def test_what_cannot_be_shown_is_refused_in_words(msg):
     with pytest.raises(Refused) as refused:
         to_jpeg(msg, 640)
     assert "OpenCV" not in str(refused.value)
+
+
+def as_sent(msg, number):
+    """A message as rospy hands it on unread, number and stamp filled in."""
+    msg.header.seq, msg.header.stamp = number, rospy.Time(number)
+    buffer = io.BytesIO()
+    msg.serialize(buffer)
+    return SimpleNamespace(_buff=buffer.getvalue())
+
+
+def test_an_image_that_differs_in_its_header_alone_is_encoded_once(monkeypatch):
+    monkeypatch.setattr(images.rospy, "Subscriber", lambda *_, **__: SimpleNamespace(
+        resolved_name="/camera"))
+    now = [0.0]
+    monkeypatch.setattr(images.time, "monotonic", lambda: now[0])
+    encoded = []
+    monkeypatch.setattr(images, "to_jpeg", lambda *given: encoded.append(given) or to_jpeg(*given))
+    stream, sent = Stream("/camera", Image, 640), []
+    stream.add(sent.append)
+    first, second = (bridge.cv2_to_imgmsg(plain(colour=colour), "bgr8")
+                     for colour in (ORANGE, (0, 0, 0)))
+    broken = Image(width=2, height=2, encoding="bgr8")
+    for number, msg in enumerate((first, first, first, second, second, broken, broken, second)):
+        now[0] += 1.0
+        stream._take(as_sent(msg, number))
+    expected = [to_jpeg(first, 640)] * 3 + [to_jpeg(second, 640)] * 2
+    assert sent[:5] == expected and sent[7] == expected[4]
+    assert all("error" in message for message in sent[5:7])
+    assert len(encoded) == 5

@@ -22,6 +22,7 @@ WIDTHS_PX = range(16, 961)
 WIDTH_PX = 640
 KINDS = {"sensor_msgs/Image": Image, "sensor_msgs/CompressedImage": CompressedImage}
 COMPRESSED = "/compressed"
+STAMPED = 12  # bytes of a message before its frame: its number and its time
 LARGEST_MESSAGE = 1 << 24  # bytes read at once, so that no old image waits in the socket
 
 
@@ -115,7 +116,8 @@ def _is_twin(topic: str, topics: set[str]) -> bool:
 
 class Stream:
     """One topic at one width, shared by all its watchers. Messages arrive in rospy's thread, which
-    drops those that come too fast without reading them."""
+    drops those that come too fast without reading them. What differs from the last one in its
+    header alone is the same JPEG."""
 
     def __init__(self, topic: str, kind: type, width: int):
         self._kind = kind
@@ -123,6 +125,7 @@ class Stream:
         self._watchers: list[Callable[..., None]] = []
         self._due = 0.0  # s, monotonic
         self._last: bytes | None = None
+        self._shown: bytes | None = None  # the last image's message, from its frame on
         self._subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._take, queue_size=1,
                                             buff_size=LARGEST_MESSAGE)
 
@@ -145,8 +148,14 @@ class Stream:
             return
         # The rate holds on average: of 30 images a second 20 are sent, not 15.
         self._due = max(self._due + 1 / RATE_HZ, now - 1 / RATE_HZ)
+        shown = raw._buff[STAMPED:]
+        if shown == self._shown:
+            self._send_to_all(self._last)
+            return
+        self._shown = None  # an error is told each time
         try:
             self._last = to_jpeg(self._kind().deserialize(raw._buff), self._width)
+            self._shown = shown
         except Refused as error:
             self._send_to_all({"error": str(error)})
         except Exception as error:  # caused by a message of another node
