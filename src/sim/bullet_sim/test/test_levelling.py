@@ -20,7 +20,7 @@ from bullet_sim.description import (
 )
 from bullet_sim.physics.assembly import assemble
 from bullet_sim.physics.levelling import CLEARANCE, levelled
-from bullet_sim.physics.tyres import CROWN, TREAD, engine_shapes
+from bullet_sim.physics.tyres import TREAD, crown, engine_shapes, find_tyre
 from bullet_sim.pose import Pose
 
 LAYER = 1e-3  # m
@@ -258,7 +258,7 @@ def test_a_wheel_has_a_tread_in_its_middle():
     wheel = tree_of().links[1]
     tread, shoulders = (collision.geometry for collision in engine_shapes(wheel))
     assert tread == Cylinder(0.05, TREAD)
-    assert shoulders == Cylinder(0.05 - CROWN, 0.03)
+    assert shoulders == Cylinder(0.05 - crown(wheel, find_tyre(wheel, wheel.collisions[0])), 0.03)
 
 
 @pytest.mark.parametrize("tree", [

@@ -14,14 +14,17 @@ FAST = 0.05, 0.5
 
 
 class Watched:
-    """A body whose speed (m/s) and rate of turn (rad/s) are what the next sample finds."""
+    """A body whose speed (m/s) and rate of turn (rad/s) are what the next sample finds.
 
-    def __init__(self, motor: bool = False):
+    `motor`: whether it is to move; `held`: whether on wheels that its motors hold.
+    """
+
+    def __init__(self, motor: bool = False, held: bool = False):
         self.seen = (0.0, 0.0)
         self.rest = AutoDisable()
         self.rest.set_step(STEP)
         self.rest.bodies.append(SimpleNamespace(
-            speeds=lambda: self.seen,
+            speeds=lambda: self.seen, wheels=SimpleNamespace(sample=lambda: held),
             joints=SimpleNamespace(wants_to_move=lambda: motor)))
 
     def samples(self, *seen: tuple[float, float]) -> bool:
@@ -81,6 +84,15 @@ def test_what_counts_as_fast(seen, fast):
     watched.samples(seen)
     assert watched.rest.is_fast == fast
     watched.samples((0.0, 0.0))
+    assert not watched.rest.is_fast
+
+
+def test_what_drives_on_held_wheels_is_not_fast():
+    watched = Watched(held=True)
+    assert not watched.samples(*[(10 * FAST[0], 10 * FAST[1])] * 20)
+    assert not watched.rest.is_fast
+    watched.rest.bodies += Watched().rest.bodies  # another one, that stands
+    watched.samples((10 * FAST[0], 0.0))
     assert not watched.rest.is_fast
 
 

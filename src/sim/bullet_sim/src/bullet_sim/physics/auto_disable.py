@@ -1,6 +1,7 @@
 """Detects when nothing moves: then a step would only repeat the one before, and is left out.
 
-It also detects fast motion: then steps need not be solved to the last bit.
+It also detects fast motion that takes the solver long: then steps need not be solved to the last
+bit. A robot on wheels that their motors hold (`held_wheels`) is solved fully.
 
 Engines call this auto-disabling; ODE does it for each group of bodies. Ours is stricter, and for
 the world as a whole: if one thing moves, or a motor is to move, everything is solved.
@@ -22,11 +23,20 @@ GROWTH = 1.5  # over these samples: more than that is the start of a fall
 NOTHING = 1e-3  # of the limit of rest; below it, growth is only rounding errors
 
 
+class SampledWheels(Protocol):
+    """The driven wheels of a body (`physics.held_wheels.HeldWheels`)."""
+
+    def sample(self) -> bool:
+        """Whether their motors hold them at their speeds; called at every sample."""
+        ...
+
+
 class SimulatedBody(Protocol):
     """A body for those that decide what the engine solves (`physics.body.Body`)."""
 
     number: int  # the engine's
     tree: Tree
+    wheels: SampledWheels
 
     @property
     def auto_disables(self) -> bool:
@@ -56,7 +66,7 @@ class AutoDisable:
     def __init__(self):
         self.bodies: list[SimulatedBody] = []
         self.disabled = False  # whether the next step would change nothing
-        self.is_fast = False  # whether anything was fast in the last sample
+        self.is_fast = False  # whether anything but held wheels was fast in the last sample
         self.found_nan = False  # whether a speed was not finite in a sample
         self.steps = 0  # steps that were needed
         self._motions: deque[float] = deque(maxlen=SAMPLES)
@@ -96,10 +106,10 @@ class AutoDisable:
         for body in self.bodies:
             speed, rate = body.speeds()
             self.found_nan = self.found_nan or speed != speed
-            self.is_fast = self.is_fast or speed > FAST_SPEED or rate > FAST_RATE
+            fast = speed > FAST_SPEED or rate > FAST_RATE
+            held = body.wheels.sample()
+            self.is_fast = self.is_fast or (fast and not held)
             motion = max(motion, _motion(speed, rate, body.joints.wants_to_move()))
-            if self.is_fast:
-                break
         if motion >= 1:
             self._motions.clear()
             return

@@ -14,6 +14,7 @@ from bullet_sim.physics.body_joints import BodyJoints
 from bullet_sim.physics.body_links import BodyLinks
 from bullet_sim.physics.client import BASE, NOWHERE, EngineBody, PhysicsClient
 from bullet_sim.physics.engine import EngineError, pybullet
+from bullet_sim.physics.held_wheels import HeldWheels
 from bullet_sim.physics.inertia import sound_inertial
 from bullet_sim.physics.steady_forces import Springs, VelocityDecay
 from bullet_sim.pose import Pose
@@ -59,6 +60,8 @@ class Body:
         self.engine = EngineBody(client, tree)
         self.links = BodyLinks(self.engine)
         self.joints = BodyJoints(self.engine, self.links)
+        self.wheels = HeldWheels(self.engine, self.joints, self.links)
+        self.joints.each_command = self.wheels.commanded
         self.base_pose_model = tree.links[0].pose_parent
         self._physics_link = {link.name: link for link in tree.links}
         self.attached: list[Attachment] = []
@@ -92,6 +95,7 @@ class Body:
         self.links.set_up()
         self._set_up_contacts()
         self.joints.set_up()
+        self.wheels.set_up()
         steady = Springs(self.engine, self.joints), VelocityDecay(self.engine, self.links)
         self._steady = [each for each in steady if each]
         for link in self.tree.links:
@@ -216,6 +220,7 @@ class Body:
         if self.number == NOWHERE:
             return
         self.client.planes.remove(self.number)
+        self.client.settling.pop(self.wheels, None)
         for seen in [seen for seen in self.client.retro if seen[0] == self.number]:
             del self.client.retro[seen]
         with contextlib.suppress(EngineError):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from statistics import fmean
 
 from bullet_sim.description import JointDescription
@@ -30,6 +30,7 @@ class BodyJoints:
         self.ball_index = {link.joint.name: links.index[link.name] for link in joints
                            if link.joint.type == "ball"}  # which have no single angle
         self.motors: dict[str, tuple[float, float]] = {}  # joint: velocity and maximum effort
+        self.each_command: Callable[[str], None] = lambda joint: None  # after one, with its joint
         self._feedback: dict[int, deque[JointWrench]] = {}  # of measured joints
         self._loads_before: dict[int, JointWrench] = {}  # of those, when the body was unloaded
         self._unloaded_at = 0  # in steps of the engine
@@ -144,10 +145,12 @@ class BodyJoints:
         self.motors[joint] = (velocity, effort)
         self._engine.change(pybullet.setJointMotorControl2, self.index[joint],
                             pybullet.VELOCITY_CONTROL, targetVelocity=velocity, force=effort)
+        self.each_command(joint)
 
     def drive_effort(self, joint: str, effort: float) -> None:
         """Effort (N m or N) during the next step."""
-        self.motors.pop(joint, None)
+        if self.motors.pop(joint, None):
+            self.each_command(joint)
         self.add_effort(joint, effort)
 
     def add_effort(self, joint: str, effort: float) -> None:

@@ -4,6 +4,7 @@ import logging
 import math
 import tempfile
 from pathlib import Path
+from typing import Protocol
 
 from bullet_sim.description import PhysicsDescription
 from bullet_sim.errors import SimulationError
@@ -40,6 +41,14 @@ STATIC_FILTER = (2, -3)  # Bullet's group and mask of static bodies: they do not
 PLACING = (pybullet.loadURDF, pybullet.resetBasePositionAndOrientation)
 
 
+class SettlingWheels(Protocol):
+    """A body's wheels, of which some were commanded (`physics.held_wheels.HeldWheels`)."""
+
+    def after_step(self) -> None:
+        """Hold those that have turned as told for some steps."""
+        ...
+
+
 class PhysicsClient:
     """Owns one engine instance: all others reach PyBullet through its methods."""
 
@@ -49,6 +58,7 @@ class PhysicsClient:
         bodies, run = self.auto_disable.bodies, self.change_without_waking
         self._correcting_velocity = CorrectingVelocityLimit(run, bodies)
         self._island_sleeping = IslandSleeping(run, bodies)
+        self.settling: dict[SettlingWheels, None] = {}  # of bodies that were commanded
         self.retro: dict[tuple[int, int], float] = {}  # laser_retro of engine links, where not 0
         self._id = pybullet.connect(pybullet.DIRECT)
         self.configure(physics, gravity)
@@ -101,6 +111,8 @@ class PhysicsClient:
                                            solverResidualThreshold=tolerance)
             self._correcting_velocity.before_step(self.timestep)
             pybullet.stepSimulation(physicsClientId=self._id)
+            for wheels in list(self.settling):
+                wheels.after_step()
             self._island_sleeping.after_step(self.auto_disable.is_sampling)
             if self.auto_disable.nearly_disabled:
                 for body in self.auto_disable.bodies:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bullet_sim.description import Collision, Cylinder, Mesh
+from bullet_sim.description import Box, Collision, Cylinder, Mesh, Sphere
 from bullet_sim.errors import FormatError
 from bullet_sim.meshes.loading import collision_mesh
 from bullet_sim.physics.assembly import PhysicsLink
@@ -22,7 +22,13 @@ ROLLING = ("revolute", "continuous")
 # Twice the margin by which the engine rounds edges: the tread has one lowest point, and the one
 # found in the next step replaces it. At 3 mm free wheels of 3 cm began to roll again.
 TREAD = 0.002  # m, its width
-CROWN = 1e-4  # m, by which the shoulders' radius is less; the tread sinks in by about half
+# Part of half the diagonal of a link's box within which the engine sees contacts (Bullet:
+# gContactBreakingThreshold): shoulders that are nearer to flat ground than this carry nothing, and
+# cost the solver three rows each. They reach it when the wheel tilts.
+SEEN = 0.02
+CROWNED = 1.1  # times that the shoulders' radius is less; the tread sinks in by less than the rest
+WIDE = 1.0  # width over radius; wider ones may keep a robot upright with their shoulders:
+LEAST_CROWN = 1e-4  # m, by which their radius is less; the tread sinks in by about half
 THINNEST = 0.005  # m, radius
 ALONG = 0.999  # cosine: the cylinder is along the joint's axis
 CENTRED = 1e-3  # m, maximum distance of its centre from that axis
@@ -48,7 +54,41 @@ def engine_shapes(link: PhysicsLink) -> Iterable[Collision]:
             yield collision
             continue
         yield replace(collision, geometry=Cylinder(tyre.radius, TREAD), pose=tyre.middle)
-        yield resized(collision, CROWN, tyre.radius, tyre.middle.position)
+        yield resized(collision, crown(link, tyre), tyre.radius, tyre.middle.position)
+
+
+def crown(link: PhysicsLink, tyre: Tyre) -> float:
+    """By how much the radius of a tyre's shoulders is less than that of its tread, m."""
+    if tyre.width > WIDE * tyre.radius:
+        return LEAST_CROWN
+    return CROWNED * SEEN * _half_diagonal(link)
+
+
+def _half_diagonal(link: PhysicsLink) -> float:
+    """Half the diagonal of the box around a link's collisions, along its axes, m."""
+    corners = np.concatenate([_corners(collision) for collision in link.collisions])
+    return 0.5 * float(np.linalg.norm(np.ptp(corners, axis=0)))
+
+
+def _corners(collision: Collision) -> np.ndarray:
+    """Points (n, 3) in the link's frame, whose box along its axes holds the shape, m."""
+    turn = rotation_matrix(collision.pose.orientation)
+    match collision.geometry:
+        case Sphere(radius):
+            return np.array((-radius, radius))[:, None] + collision.pose.position
+        case Cylinder(radius, length):
+            half = np.array((radius, radius, length / 2))
+        case Box(size):
+            half = np.array(size) / 2
+        case Mesh():
+            try:
+                return collision_mesh(collision.geometry)[0] @ turn.T + collision.pose.position
+            except FormatError:  # reported where the shape is made
+                return np.zeros((0, 3))
+        case _:
+            return np.zeros((0, 3))
+    reach = np.abs(turn) @ half
+    return np.stack((-reach, reach)) + collision.pose.position
 
 
 def resized(collision: Collision, less: float, radius: float, centre: Vector3) -> Collision:
