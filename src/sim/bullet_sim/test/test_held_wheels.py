@@ -13,12 +13,12 @@ from bullet_sim.description import (
     JointDescription,
     LinkDescription,
     ModelDescription,
+    PhysicsDescription,
     Plane,
     Sphere,
     Surface,
     WorldDescription,
 )
-from bullet_sim.physics import client, held_wheels
 from bullet_sim.physics.held_wheels import HEAVIER, SETTLING
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
@@ -54,8 +54,9 @@ def robot() -> ModelDescription:
 class Rig:
     """A robot on flat ground."""
 
-    def __init__(self, *more: ModelDescription, description: ModelDescription | None = None):
-        self.world = World(WorldDescription(models=(FLOOR, *more)))
+    def __init__(self, *more: ModelDescription, description: ModelDescription | None = None,
+                 physics: PhysicsDescription = PhysicsDescription()):
+        self.world = World(WorldDescription(models=(FLOOR, *more), physics=physics))
         self.model = self.world.spawn(description or robot())
         self.world.step(300)
 
@@ -194,11 +195,23 @@ def test_a_rebuilt_body_starts_with_its_own_inertia(make):
     assert not rig.world._client.settling
 
 
+@pytest.mark.parametrize("residual, tolerances", [(None, {1e-7}), (1e-6, {1e-6})])
+def test_a_world_that_says_how_exactly_is_solved_so_throughout(make, residual, tolerances):
+    rig = make(physics=PhysicsDescription(residual=residual))
+    seen = set()
+    rig.command(0.15, 0.15)
+    for _ in range(4):
+        rig.world.step(100)
+        seen.add(rig.world._client._tolerance)
+    assert seen == tolerances
+    assert rig.inertia() == pytest.approx([OWN, OWN] if residual else [HELD, HELD])
+
+
 # --- errors against the exact solution, with the wheels' own inertia throughout
 
-def driven(make, left: float, right: float, *more) -> tuple[float, float]:
+def driven(make, left: float, right: float, **physics) -> tuple[float, float]:
     """m and rad in 4 s after the command."""
-    rig = make(*more)
+    rig = make(physics=PhysicsDescription(**physics))
     rig.command(left, right)
     start, yaw, last = rig.model.pose.position, 0.0, 0.0
     for _ in range(40):
@@ -209,31 +222,27 @@ def driven(make, left: float, right: float, *more) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("left, right", [(0.15, 0.15), (0.12, 0.18), (-0.1, 0.1), (0.5, 0.5)])
-def test_it_drives_closer_to_the_exact_solution_than_coarsely_solved(
-        make, monkeypatch, left, right):
+def test_it_drives_closer_to_the_exact_solution_than_coarsely_solved(make, left, right):
     here = driven(make, left, right)
-    monkeypatch.setattr(held_wheels, "HEAVIER", 0.0)
-    monkeypatch.setattr(held_wheels, "SETTLING", 10 ** 9)  # never held: solved coarsely
-    coarse = driven(make, left, right)
-    monkeypatch.setattr(client, "FAST", 1e-9)
-    monkeypatch.setattr(client, "FEWEST_ITERATIONS", 1000)
-    exact = driven(make, left, right)
+    coarse = driven(make, left, right, residual=1e-5)
+    exact = driven(make, left, right, residual=1e-9, iterations=1000)
     assert abs(here[0] - exact[0]) <= max(abs(coarse[0] - exact[0]), 5e-5)
     assert abs(here[1] - exact[1]) <= max(abs(coarse[1] - exact[1]), 1e-4)
     assert abs(here[1] - exact[1]) < math.radians(0.05)
 
 
-def test_a_driving_robot_pushes_a_box_no_harder_than_with_wheels_of_their_own(make, monkeypatch):
+def test_a_driving_robot_pushes_a_box_no_harder_than_with_wheels_of_their_own(make):
     """A blow at 0.3 m/s: held wheels must not add to the momentum."""
     box = ModelDescription("box", Pose((0.3, 0.0, 0.05)), links=(LinkDescription(
         "link", inertial=Inertial(1.0, inertia=(0.002, 0, 0, 0.002, 0, 0.002)),
         collisions=(Collision("c", Box((0.1, 0.3, 0.1)), surface=Surface(mu=0.2, mu2=0.2)),)),))
     front = Collision("front", Box((0.02, 0.1, 0.02)), Pose((0.1, 0.0, 0.02)))
 
-    def pushed() -> list[float]:
+    def pushed(**physics) -> list[float]:
         described = robot()
         base = replace(described.links[0], collisions=(*described.links[0].collisions, front))
-        rig = make(box, description=replace(described, links=(base, *described.links[1:])))
+        rig = make(box, description=replace(described, links=(base, *described.links[1:])),
+                   physics=PhysicsDescription(**physics))
         rig.command(0.3, 0.3)
         at = []
         for _ in range(30):
@@ -241,7 +250,5 @@ def test_a_driving_robot_pushes_a_box_no_harder_than_with_wheels_of_their_own(ma
             at.append(rig.world.models["box"].pose.position[0])
         return at
     here = pushed()
-    monkeypatch.setattr(held_wheels, "SETTLING", 10 ** 9)
-    monkeypatch.setattr(client, "FAST", client.EXACT)
     assert here[-1] > 0.4
-    assert here == pytest.approx(pushed(), abs=2e-3)
+    assert here == pytest.approx(pushed(residual=1e-7), abs=2e-3)

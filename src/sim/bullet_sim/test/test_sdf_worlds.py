@@ -310,6 +310,12 @@ def test_the_default_profile_counts_and_old_names_are_known(load):
     assert (old.gravity, old.magnetic_field) == ((0, 0, -3), (1, 2, 3))
 
 
+@pytest.mark.parametrize("written, residual", [("<residual>1e-6</residual>", 1e-6), ("", None)])
+def test_a_world_may_say_how_exactly_it_is_solved(load, written, residual):
+    world = load(f"<physics><bullet><solver>{written}</solver></bullet></physics>")
+    assert world.physics.residual == residual
+
+
 def test_solver_numbers_are_kept(load):
     # conforms: sdf physics/ode/solver/iters, sdf physics/ode/solver/sor, sdf physics/max_contacts
     # conforms: sdf physics/ode/solver/precon_iters, sdf physics/ode/constraints/cfm

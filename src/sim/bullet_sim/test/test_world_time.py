@@ -54,12 +54,14 @@ OUTSIDE = {
     "max_step_size": (0.0, -0.001, 0.99e-5, 0.101, math.nan, math.inf),
     "real_time_update_rate": (-1.0, 1e6 + 0.5, math.nan, math.inf),
     "iterations": (-1, 10_001, 2 ** 40),
+    "residual": (0.0, -1e-7, 0.0101, math.nan, math.inf),
 }
 
 
 @pytest.mark.parametrize("name, value", [
     ("max_step_size", 1e-5), ("max_step_size", 0.1), ("real_time_update_rate", 0.0),
-    ("real_time_update_rate", 1e6), ("iterations", 0), ("iterations", 10_000)])
+    ("real_time_update_rate", 1e6), ("iterations", 0), ("iterations", 10_000),
+    ("residual", 1e-12), ("residual", 0.01)])
 def test_the_bounds_themselves_are_possible(world, name, value):
     world.configure_physics(**{name: value})
     assert getattr(world.description.physics, name) == value

@@ -33,9 +33,9 @@ LOAD_FLAGS = (
 # to turn after 8 s. 150, the value in the courses' worlds, holds 0.15 m/s within 0.05 %.
 FEWEST_ITERATIONS = 150
 # The solver stops once no row of an iteration changes by more than the root of this, m^2/s^2 (or
-# rad^2/s^2). EXACT is the engine's own. FAST, 3 mm/s, is for worlds in which something drives:
-# steps of the waffle take half as long, its drives of 10 s end within 0.2 mm and 0.2 degrees of the
-# exact ones, and a box at rest on a slope meanwhile creeps at 0.13 mm/s.
+# rad^2/s^2), unless the world says what else. EXACT is the engine's own. FAST, 3 mm/s, is for
+# worlds in which something is fast that does not roll on held wheels: a box at rest on a slope
+# meanwhile creeps at 0.13 mm/s.
 EXACT, FAST = 1e-7, 1e-5
 STATIC_FILTER = (2, -3)  # Bullet's group and mask of static bodies: they do not meet each other
 PLACING = (pybullet.loadURDF, pybullet.resetBasePositionAndOrientation)
@@ -70,7 +70,7 @@ class PhysicsClient:
             fixedTimeStep=physics.max_step_size,
             numSubSteps=0,
             numSolverIterations=max(physics.iterations, FEWEST_ITERATIONS),
-            solverResidualThreshold=EXACT,
+            solverResidualThreshold=physics.residual or EXACT,
             # A pyramid, SDF's default <friction_model>. With a cone light driven wheels creep:
             # a turn in place was 8 % slow.
             enableConeFriction=0,
@@ -78,7 +78,8 @@ class PhysicsClient:
             enableFileCaching=0,
         )
         self.change(pybullet.setGravity, *gravity)
-        self._tolerance = EXACT
+        self.residual = physics.residual
+        self._tolerance = self.residual or EXACT
         self.timestep = physics.max_step_size  # s
         self.surface_layer = physics.contact_surface_layer  # m
         self.auto_disable.set_step(physics.max_step_size)
@@ -104,7 +105,7 @@ class PhysicsClient:
     def step(self) -> None:
         """Advance the engine by one fixed step, unless it would change nothing."""
         if self.auto_disable.step_needed():
-            tolerance = FAST if self.auto_disable.is_fast else EXACT
+            tolerance = self.residual or (FAST if self.auto_disable.is_fast else EXACT)
             if tolerance != self._tolerance:
                 self._tolerance = tolerance
                 self.change_without_waking(pybullet.setPhysicsEngineParameter,

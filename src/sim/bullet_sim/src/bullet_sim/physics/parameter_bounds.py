@@ -15,6 +15,7 @@ SHORTEST_STEP = 1e-5  # s; with shorter ones 10 ms of time, and thus an answer, 
 LONGEST_STEP = 0.1  # s; with longer ones bodies pass through each other
 MOST_ITERATIONS = 10_000  # per step; the limit in gazebo_ros' cfg/Physics.cfg
 HIGHEST_RATE = 1e6  # Hz
+COARSEST = 1e-2  # m^2/s^2, of the solver's residual: 0.1 m/s
 # Fields of PhysicsDescription without a parameter in the engine, and their names in messages; none
 # may be negative.
 KEPT = {"sor": "sor_pgs_w", "cfm": "cfm", "erp": "erp",
@@ -36,17 +37,21 @@ def check_physics(physics: PhysicsDescription) -> None:
     if not 0 <= physics.iterations <= MOST_ITERATIONS:
         raise SimulationError(f"{physics.iterations} solver iterations per step are not possible; "
                               f"0 to {MOST_ITERATIONS} are")
+    if physics.residual is not None and not 0.0 < physics.residual <= COARSEST:
+        raise SimulationError(f"a residual of {physics.residual:g} m^2/s^2 is not possible; more "
+                              f"than 0, up to {COARSEST:g} is")
 
 
 def possible_physics(physics: PhysicsDescription) -> PhysicsDescription:
     """A world file's parameters; the default, with an error line, for those beyond the limits."""
     usual = PhysicsDescription()
-    for field in ("max_step_size", "real_time_update_rate", "iterations"):
+    for field in ("max_step_size", "real_time_update_rate", "iterations", "residual"):
         asked, default = getattr(physics, field), getattr(usual, field)
         try:
             check_physics(replace(usual, **{field: asked}))
         except SimulationError as error:
-            log.error("<physics>: %s; %g is used instead", error, default)
+            log.error("<physics>: %s; %s is used instead", error,
+                      "the usual one" if default is None else f"{default:g}")
             physics = replace(physics, **{field: default})
     return physics
 

@@ -88,6 +88,7 @@ def _read_physics(element: Element, world: str) -> PhysicsDescription:
             element, solver + "precon_iters", usual.precon_iterations, where
         ),
         sor=number(element, solver + "sor", usual.sor, where),
+        residual=number(element, "bullet/solver/residual", 0.0, where) or None,
         **fields(number, element, "cfm erp contact_max_correcting_vel contact_surface_layer", usual,
                  where, "ode/constraints/"),
     )
