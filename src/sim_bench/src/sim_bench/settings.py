@@ -9,7 +9,7 @@ from pathlib import Path
 from evaluation.command_line import Parser, number, one_of
 
 PARTS = ("limits", "renderer", "step", "growth", "startup", "ros", "fast", "robots", "respawn",
-         "learning", "worlds", "memory")
+         "learning", "worlds", "accuracy", "memory")
 DEFAULT_MEMORY_S = 300.0
 LEAST_MEMORY_S = 20.0  # below that there are too few samples for a growth
 

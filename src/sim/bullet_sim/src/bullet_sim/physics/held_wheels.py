@@ -91,14 +91,14 @@ class HeldWheels:
             self._engine.client.settling.pop(self, None)
 
     def sample(self) -> bool:
-        """Let go of wheels that may not be held any more; whether any was held since the last time.
-        """
+        """Let go of wheels that may not be held any more; whether the others were held, but for
+        commands, since the last time."""
         were_held, self._were_held = self._were_held or bool(self._held), False
         for joint in [each for each in self._wheels if each in self._held]:
             if not self._may_be_held(joint):
                 self._let_go(joint)
                 self._wait(joint, self._engine.client.auto_disable.sample_steps)
-        return were_held and (bool(self._held) or bool(self._settling))
+        return were_held and all(steps <= SETTLING for steps in self._settling.values())
 
     def _wait(self, joint: str, steps: int) -> None:
         self._settling[joint] = steps
