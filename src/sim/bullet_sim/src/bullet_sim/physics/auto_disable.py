@@ -30,6 +30,10 @@ class SampledWheels(Protocol):
         """Whether their motors hold them at their speeds; called at every sample."""
         ...
 
+    def update_inertia(self) -> None:
+        """The world begins or ends to be solved fully."""
+        ...
+
 
 class SimulatedBody(Protocol):
     """A body for those that decide what the engine solves (`physics.body.Body`)."""

@@ -131,6 +131,7 @@ class BodyJoints:
         if not self._engine.is_number("joint position", position, velocity):
             return
         self._engine.change(pybullet.resetJointState, self.index[joint], position, velocity)
+        self.each_command(joint)
 
     def drive_velocity(self, joint: str, velocity: float, effort: float) -> None:
         """Motor that holds a velocity with at most `effort` (N m or N), until the next command.

@@ -110,6 +110,8 @@ class PhysicsClient:
                 self._tolerance = tolerance
                 self.change_without_waking(pybullet.setPhysicsEngineParameter,
                                            solverResidualThreshold=tolerance)
+                for body in self.auto_disable.bodies:
+                    body.wheels.update_inertia()
             self._correcting_velocity.before_step(self.timestep)
             pybullet.stepSimulation(physicsClientId=self._id)
             for wheels in list(self.settling):

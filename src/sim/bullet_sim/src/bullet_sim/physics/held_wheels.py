@@ -104,20 +104,30 @@ class HeldWheels:
         self._settling[joint] = steps
         self._engine.client.settling[self] = None
 
+    def update_inertia(self) -> None:
+        """The world begins or ends to be solved fully."""
+        for joint in self._wheels:
+            if joint in self._held:
+                self._set_inertia(joint)
+
     def _hold(self, joint: str) -> None:
         del self._settling[joint]
         self._held.add(joint)
         self._were_held = True
-        self._solve_with(joint, self._wheels[joint].held)
+        self._set_inertia(joint)
 
     def _let_go(self, joint: str) -> None:
         if joint in self._held:
             self._held.discard(joint)
-            self._solve_with(joint, self._wheels[joint].own)
+            self._set_inertia(joint)
 
-    def _solve_with(self, joint: str, inertia: tuple[float, ...]) -> None:
+    def _set_inertia(self, joint: str) -> None:
+        wheel = self._wheels[joint]
+        # Heavier wheels end the iterations sooner: what is left open then would be more.
+        heavier = joint in self._held and not self._engine.client.auto_disable.is_fast
+        inertia = wheel.held if heavier else wheel.own
         self._engine.change_without_waking(
-            pybullet.changeDynamics, self._wheels[joint].index, localInertiaDiagonal=inertia)
+            pybullet.changeDynamics, wheel.index, localInertiaDiagonal=inertia)
 
     def _may_be_held(self, joint: str) -> bool:
         wanted = self._joints.motor(joint)[0]
