@@ -48,9 +48,7 @@ WORLD = """<?xml version="1.0"?>
       <uri>model://{name}</uri>
       <pose>{x:g} {y:g} 0 0 0 0</pose>
     </include>
-{walls}    <!-- The step is Gazebo's own, and the residual the simulator's: with 3 mm/s the car is after 5 s
-         0.1 degrees from where the exact solution takes it (bullet_sim/README.md). -->
-    <physics type="ode">
+{walls}    <physics type="ode">
       <max_step_size>0.001</max_step_size>
       <real_time_factor>1</real_time_factor>
       <real_time_update_rate>1000</real_time_update_rate>
