@@ -38,8 +38,8 @@ def check_physics(physics: PhysicsDescription) -> None:
         raise SimulationError(f"{physics.iterations} solver iterations per step are not possible; "
                               f"0 to {MOST_ITERATIONS} are")
     if physics.residual is not None and not 0.0 < physics.residual <= COARSEST:
-        raise SimulationError(f"a residual of {physics.residual:g} m^2/s^2 is not possible; more "
-                              f"than 0, up to {COARSEST:g} is")
+        raise SimulationError(f"a residual of {physics.residual:g} is not possible; more than "
+                              f"0, up to {COARSEST:g} is")
 
 
 def possible_physics(physics: PhysicsDescription) -> PhysicsDescription:
