@@ -34,7 +34,7 @@ WAYS = {
     "exact": PhysicsDescription(residual=1e-9, iterations=1000),
 }
 SPEEDS = (0.05, 0.15, 0.5, 1.0)  # m/s
-CIRCLE = {"racecar": 0.8}  # m, radius; others 0.5
+CIRCLE = {"racecar": 1.0}  # m, radius; others 0.5
 KINDS = ("straight", "circle", "spot", "bump")
 STANDING, DRIVING, PIECE = 300, 5000, 100  # steps
 BUMP = 0.004  # m, height of a rod of 0.2 m that is sunk in the ground
