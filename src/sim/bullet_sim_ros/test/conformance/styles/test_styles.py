@@ -78,8 +78,11 @@ def check_reached(world, expected, within):
     for place, value in expected.items():
         name, _, joint = place.partition("/")
         model = world.models[name]
-        found = model.joints[joint].position if joint else \
-            (*model.pose.position[:2], model.pose.rpy()[2])
+        if joint:
+            found = model.joints[joint].position
+        else:  # x, y and yaw, the one next to what is expected
+            yaw = value[2] + math.remainder(model.pose.rpy()[2] - value[2], 2 * math.pi)
+            found = (*model.pose.position[:2], yaw)
         assert found == pytest.approx(value, abs=within), place
 
 
