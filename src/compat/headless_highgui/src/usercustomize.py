@@ -3,7 +3,7 @@
 cv2 gets its windows, cv_bridge a faster swap of colours, Tk a line for want of a screen, some
 modules get the names that they had when a script was written, and rospy's subscribers say so when
 their simulator has ended. A roslaunch that a program of ours refuses ends with one line; each
-begins without setuptools, and a program of rospy without NumPy and catkin unless it asks for them.
+begins without setuptools.
 Programs of ours print in the language of the locale, and end at Ctrl-C without a traceback.
 """
 
@@ -11,26 +11,21 @@ import collections
 import os
 import sys
 import time
-from _thread import get_ident
 from importlib.machinery import PathFinder
 
-LATER = "catkin.find_in_workspaces"
 BRIDGE = "cv_bridge.boost.cv_bridge_boost"
-AMENDED = {LATER, BRIDGE, "cv2", "genpy.message", "joint_state_publisher", "numpy",
-           "roslaunch.loader", "rospy.topics", "tkinter", "yaml"}
-LAUNCHERS = {"check", "roslaunch", "roscore", "rostest"}
+AMENDED = {BRIDGE, "cv2", "joint_state_publisher", "numpy", "roslaunch.loader", "rospy.topics",
+           "tkinter", "yaml"}
+LAUNCHERS = {"roslaunch", "roscore", "rostest"}
 
 
 class Watch:
     """A finder that lets every import pass; it amends each of those modules after its import."""
 
     waited_for = set(AMENDED)
-    without_numpy = None  # the thread in which genpy.message begins
 
     @classmethod
     def find_spec(cls, name, _path=None, _target=None):
-        if name == "numpy" and cls.without_numpy == get_ident():
-            raise ModuleNotFoundError(name=name)
         if name == "rosclean" and os.path.basename(sys.argv[0]) in LAUNCHERS:
             take_own_distutils()
         if name not in cls.waited_for:
@@ -40,45 +35,20 @@ class Watch:
         cls.waited_for.remove(name)  # it is looked for once more below, and cv2 imports itself
         spec = find_spec(name)
         if spec is not None and hasattr(spec.loader, "exec_module"):
-            load, amend = spec.loader.exec_module, begin_later if name == LATER else cls.load
-            spec.loader.exec_module = lambda module: amend(load, module)
+            load = spec.loader.exec_module
+            spec.loader.exec_module = lambda module: cls.load(load, module)
         return spec
 
-    @classmethod
-    def load(cls, load, module):
-        if module.__name__ == "genpy.message" and "numpy" not in sys.modules:
-            cls.without_numpy = get_ident()
-        try:
-            load(module)
-        finally:
-            if module.__name__ == "genpy.message":
-                cls.without_numpy = None
+    @staticmethod
+    def load(load, module):
+        load(module)
         for amend in (put_old_names_back, give_windows, hasten_cv_bridge, tell_of_the_end,
-                      end_refused_launch, let_messages_hold_numbers_of_numpy):
+                      end_refused_launch):
             try:
                 amend(module)
             except Exception as error:  # a script that needs none of it must not fail here
                 print(f"headless_highgui: {module.__name__} is not amended: {error}",
                       file=sys.stderr)
-
-
-def begin_later(load, module):
-    """Run catkin.find_in_workspaces when its function, or anything else in it, is asked for.
-
-    rospy imports it, and with it a parser of package.xml, but only who starts nodes calls it.
-    """
-    def find_in_workspaces(*words, **options):
-        if module.find_in_workspaces is find_in_workspaces:
-            load(module)
-        return module.find_in_workspaces(*words, **options)
-
-    def __getattr__(name):
-        if name.startswith("__") or module.find_in_workspaces is not find_in_workspaces:
-            raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
-        load(module)
-        return getattr(module, name)
-
-    module.find_in_workspaces, module.__getattr__ = find_in_workspaces, __getattr__
 
 
 def take_own_distutils():
@@ -124,16 +94,6 @@ def end_refused_launch(module):
         from headless_highgui.launch_end import amend_loader
 
         amend_loader(module)
-
-
-def let_messages_hold_numbers_of_numpy(module):
-    """As genpy.message does at its own import, where NumPy takes a fifth of rospy's time."""
-    messages, numpy = map(sys.modules.get, ("genpy.message", "numpy"))
-    if module in (messages, numpy) and messages and numpy:
-        kinds = [getattr(numpy, f"{kind}{bits}") for kind in ("int", "uint") for bits in
-                 (8, 16, 32, 64)]
-        known = messages._valid_float_types
-        known += [kind for kind in (numpy.float32, numpy.float64, *kinds) if kind not in known]
 
 
 def watch_standard():

@@ -234,9 +234,8 @@ def test_python_without_cv2_loads_nothing_more():
 
 def test_a_module_is_watched_for_once():
     code = "import cv2; from usercustomize import Watch; print(sorted(Watch.waited_for))"
-    waited_for = ("['catkin.find_in_workspaces', 'cv_bridge.boost.cv_bridge_boost', "
-                  "'genpy.message', 'joint_state_publisher', 'roslaunch.loader', 'rospy.topics', "
-                  "'tkinter', 'yaml']")
+    waited_for = ("['cv_bridge.boost.cv_bridge_boost', 'joint_state_publisher', "
+                  "'roslaunch.loader', 'rospy.topics', 'tkinter', 'yaml']")
     assert run_python(code, {"DISPLAY": ""}).stdout.strip() == waited_for
 
 
@@ -285,37 +284,6 @@ def test_a_program_that_imports_roslaunch_keeps_its_setuptools():
     code = ("import sys; sys.argv[0] = 'mine.py'; hack = sys.modules.get('_distutils_hack'); "
             "import rosclean; print(hack is None or hack.DISTUTILS_FINDER in sys.meta_path)")
     assert run_python(code).stdout == "True\n"
-
-
-MESSAGE = ("import sys\nfrom std_msgs.msg import Float64, Int8\n"
-           "def takes(kind):\n"
-           "    try: kind[0](kind[1])._check_types()\n"
-           "    except Exception: return False\n"
-           "    return True\n")
-
-
-@pytest.mark.parametrize("before", ["", "import numpy\n"])
-def test_messages_hold_numbers_of_numpy_whenever_it_is_imported(before):
-    code = (f"{before}{MESSAGE}print('numpy' in sys.modules)\nimport numpy\n"
-            "print([takes((Float64, getattr(numpy, name)(2))) for name in "
-            "'float32 float64 int8 int64 uint16 uint64 float16'.split()], takes((Float64, 'a')))\n"
-            "import genpy.message\nprint(len(genpy.message._valid_float_types))")
-    done = run_python(code)
-    assert done.stdout == f"{bool(before)}\n{[True] * 6 + [False]} False\n13\n", done.stderr
-
-
-def test_a_program_of_rospy_begins_without_a_parser_of_packages():
-    code = ("import sys, rospy\nprint('catkin_pkg' in sys.modules, 'numpy' in sys.modules)\n"
-            "from roslib.packages import find_node\nprint(find_node('rosout', 'rosout'))\n"
-            "print('catkin_pkg' in sys.modules)")
-    assert run_python(code).stdout == "False False\n['/usr/lib/rosout/rosout']\nTrue\n"
-
-
-def test_who_imports_the_parser_of_packages_has_all_of_it():
-    code = ("import catkin.find_in_workspaces as found\nfrom catkin.find_in_workspaces import "
-            "find_in_workspaces\nprint(found.get_workspaces()[-1], hasattr(found, 'nothing'), "
-            "find_in_workspaces(['share'], 'roscpp'))")
-    assert run_python(code).stdout == "/usr False ['/usr/share/roscpp']\n"
 
 
 BRIDGE = """
