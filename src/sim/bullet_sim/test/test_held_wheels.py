@@ -223,6 +223,42 @@ def test_a_world_that_says_how_exactly_is_solved_so_throughout(make, residual, t
     assert rig.inertia() == pytest.approx([OWN, OWN] if residual else [HELD, HELD])
 
 
+def test_what_is_no_motor_holds_nothing(make):
+    """Wheels without grip and without a motor, and the brake of a joint's own dry friction."""
+    described = robot()
+    slippery = tuple(replace(link, collisions=tuple(replace(each, surface=Surface(mu=0.0, mu2=0.0))
+                                                    for each in link.collisions))
+                     for link in described.links)
+    braked = tuple(replace(joint, friction=STRONG) for joint in described.joints)
+    for changed in ({"links": slippery}, {"joints": braked}):
+        rig = make(description=replace(described, **changed))
+        rig.world.step(3 * SAMPLE)
+        assert rig.inertia() == pytest.approx([OWN, OWN])
+
+
+def test_gravity_that_changes_while_something_is_fast_leaves_wheels_to_be_held(make):
+    rig = make()
+    rig.command(0.15, 0.15)
+    client = rig.world._client
+    client.auto_disable.is_fast = True
+    rig.world.step()
+    rig.world.configure_physics(gravity=(0.0, 0.0, -9.0))
+    rig.world.step(2 * SAMPLE)
+    assert client._tolerance == 1e-7 and rig.inertia() == pytest.approx([HELD, HELD])
+
+
+def test_velocity_decay_takes_the_wheels_own_inertia(make):
+    described = robot()
+    links = tuple(replace(link, angular_damping=0.1) for link in described.links)
+    rig = make(description=replace(described, links=links))
+    rig.command(0.15, 0.15)
+    rig.world.step(100)
+    assert rig.inertia() == pytest.approx([HELD, HELD])
+    (body,) = rig.model.bodies
+    (decay,) = [each for each in body._steady if type(each).__name__ == "VelocityDecay"]
+    assert max(decay._inertia["left"][1]) == pytest.approx(OWN)
+
+
 # --- errors against the exact solution, with the wheels' own inertia throughout
 
 def driven(make, left: float, right: float, **physics) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from types import SimpleNamespace
 
 import pybullet
 import pytest
@@ -20,7 +21,7 @@ from bullet_sim.description import (
     Plane,
     Surface,
 )
-from bullet_sim.physics.tyres import LEAST_CROWN, TREAD
+from bullet_sim.physics.tyres import LEAST_CROWN, TREAD, crown
 from bullet_sim.pose import Pose, rotate
 
 RADIUS, WIDTH, TRACK = 0.05, 0.03, 0.3  # m
@@ -174,3 +175,13 @@ def test_shoulders_that_a_robot_may_stand_upright_by_are_hardly_smaller(world, s
     cos, sin = math.cos(math.radians(10)), math.sin(math.radians(10))
     expected = (RADIUS - LEAST_CROWN) * cos + RADIUS * sin - ROUNDED * (cos + sin - 1.0)
     assert model.links["wheel"].pose.position[2] == pytest.approx(expected, abs=SOFT)
+
+
+@pytest.mark.parametrize("boom", [0.5, 3.0])
+def test_what_else_is_on_a_wheels_link_does_not_eat_its_shoulders(boom):
+    """A turntable or hub with a boom: its box is much larger than the wheel."""
+    parts = (Collision("tyre", Cylinder(0.1, 0.05), LAID),
+             Collision("boom", Box((boom, 0.02, 0.02)), Pose((boom / 2, 0.0, 0.0))))
+    link = SimpleNamespace(collisions=parts)
+    tyre = SimpleNamespace(radius=0.1, width=0.05)
+    assert crown(link, tyre) == LEAST_CROWN

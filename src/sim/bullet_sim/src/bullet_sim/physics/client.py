@@ -79,7 +79,7 @@ class PhysicsClient:
         )
         self.change(pybullet.setGravity, *gravity)
         self.residual = physics.residual
-        self._tolerance = self.residual or EXACT
+        self._tolerance: float | None = None  # the next step sets it, and inertias
         self.timestep = physics.max_step_size  # s
         self.surface_layer = physics.contact_surface_layer  # m
         self.auto_disable.set_step(physics.max_step_size)

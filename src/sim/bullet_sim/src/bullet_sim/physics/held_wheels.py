@@ -74,7 +74,9 @@ class HeldWheels:
             return
         self._let_go(joint)
         self._settling.pop(joint, None)
-        if self._joints.motor(joint)[1] >= self._wheels[joint].torque:
+        effort = self._joints.motor(joint)[1]  # no more than dry friction: a brake, no motor
+        if (effort > self._joints.description(joint).friction
+                and effort >= self._wheels[joint].torque):
             self._wait(joint, SETTLING)
 
     def after_step(self) -> None:

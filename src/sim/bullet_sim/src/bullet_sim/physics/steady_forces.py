@@ -88,6 +88,9 @@ class VelocityDecay:
             (link.name, min(link.linear_damping, 1.0), min(link.angular_damping, 1.0))
             for link in engine.tree.links if link.linear_damping or link.angular_damping
             if not engine.tree.fixed or link.parent is not None]
+        # The file's own: a held wheel's is another one (`held_wheels`).
+        self._inertia = {name: engine.dynamics(links.index[name])[:3:2]
+                         for name, *_ in self._links}
 
     def __bool__(self) -> bool:
         return bool(self._links)
@@ -98,7 +101,7 @@ class VelocityDecay:
         for name, linear, angular in self._links:
             index = self._motion.index[name]
             com, velocity, rate = self._motion.com_motion(index)
-            mass, _, moments = self._engine.dynamics(index)[:3]
+            mass, moments = self._inertia[name]
             if math.hypot(*velocity) > SLOWEST:
                 self._push(pybullet.applyExternalForce, index,
                            [-linear * mass / step * v for v in velocity],

@@ -27,8 +27,10 @@ TREAD = 0.002  # m, its width
 # cost the solver three rows each. They reach it when the wheel tilts.
 SEEN = 0.02
 CROWNED = 1.1  # times that the shoulders' radius is less; the tread sinks in by less than the rest
-WIDE = 1.0  # width over radius; wider ones may keep a robot upright with their shoulders:
-LEAST_CROWN = 1e-4  # m, by which their radius is less; the tread sinks in by about half
+# Width and crown over radius: wider tyres may keep a robot upright with their shoulders,
+# and a box larger than the wheel's has something else in it. There the radius is hardly less:
+WIDE, MOST_CROWN = 1.0, 0.04
+LEAST_CROWN = 1e-4  # m; the tread sinks in by about half
 THINNEST = 0.005  # m, radius
 ALONG = 0.999  # cosine: the cylinder is along the joint's axis
 CENTRED = 1e-3  # m, maximum distance of its centre from that axis
@@ -59,9 +61,10 @@ def engine_shapes(link: PhysicsLink) -> Iterable[Collision]:
 
 def crown(link: PhysicsLink, tyre: Tyre) -> float:
     """By how much the radius of a tyre's shoulders is less than that of its tread, m."""
-    if tyre.width > WIDE * tyre.radius:
+    unseen = CROWNED * SEEN * _half_diagonal(link)
+    if tyre.width > WIDE * tyre.radius or unseen > MOST_CROWN * tyre.radius:
         return LEAST_CROWN
-    return CROWNED * SEEN * _half_diagonal(link)
+    return unseen
 
 
 def _half_diagonal(link: PhysicsLink) -> float:
