@@ -231,6 +231,11 @@ class DepthCameraTopics(CameraTopics):
                     lambda: self._publish_depth(reading, state.view.focal_length_px, wanted))
                 if before is not None:
                     before.result()  # already done: hand_on has waited for it
+            elif self._rest is not None:
+                self._rest.result()
+                self._rest = self._cut = None
+                self._last_depth.forget()
+                self._last_points.forget()
         self._publish_infos(state.time, wanted)
 
     def _publish_infos(self, time: float, wanted: Wanted) -> None:
