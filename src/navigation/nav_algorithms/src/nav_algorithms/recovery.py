@@ -62,7 +62,8 @@ def escape(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
 
     Of the free ways over `distance`, or over half of it if there is none, the one that ends
     farthest from all obstacles. Among equals backwards comes first: the robot came from there. The
-    command holds for the length of its trajectory.
+    command holds for the length of its trajectory. Within a cell of something smaller footprints
+    are tried, too, for ways that end no nearer to it.
     """
     pose = np.asarray(pose, float)
     bends = [0.0]
@@ -73,26 +74,29 @@ def escape(costmap: Costmap, footprint: np.ndarray, pose: np.ndarray,
             for sign in (-1.0, 1.0) for bend in bends]
     both = len(arcs) // 2
     radii = footprints.free_radii(costmap)
+    least = 0.0
     for outline in footprints.to_leave_with(costmap, np.asarray(footprint, float), pose):
         for some in (arcs[:both], arcs[both:]):
-            best = _roomiest(costmap, radii, outline, some)
+            best = _roomiest(costmap, radii, outline, some, least)
             if best is not None:
                 sign, bend, arc = best
                 speed = sign * settings.speed
                 return Command(speed, 0.0, speed * bend, arc)
+        least = radii[tuple(costmap.cells_of(pose[:2]))]  # with less of itself: no nearer
     return None
 
 
 def _roomiest(costmap: Costmap, radii: np.ndarray, outline: np.ndarray,
-              arcs: list[tuple[float, float, np.ndarray]]
+              arcs: list[tuple[float, float, np.ndarray]], least: float
               ) -> tuple[float, float, np.ndarray] | None:
-    """Of the arcs (sign, bend, poses) that are free, the one that ends farthest from obstacles."""
+    """Of the arcs (sign, bend, poses) that are free, the one that ends farthest from obstacles, and
+    no nearer than `least`, in cells."""
     best, widest = None, 0.0
     for found in arcs:
         arc = found[2]
         if (footprints.costs(costmap, outline, arc) < 0).any():
             continue
         space = radii[tuple(costmap.cells_of(arc[-1, :2]))]
-        if space > widest + 1e-9:
+        if space >= least and space > widest + 1e-9:
             best, widest = found, space
     return best

@@ -62,22 +62,19 @@ class LocalPlanner(ABC):
               velocity: np.ndarray, path_frame: np.ndarray) -> Command | None:
         """A command on the way or at its end; braking, it may still exceed the limits."""
         path = self.following.left(pose, path_frame)
-        footprint = np.asarray(footprint, float)
-        fitting = footprints.shrunk_to_fit(costmap, footprint, pose)
-        if fitting is None:
+        footprint = footprints.shrunk_to_fit(costmap, np.asarray(footprint, float), pose)
+        if footprint is None:
             return None
         if self.end.at_place(pose, path[-1]):
-            return self.end.command(costmap, fitting, pose, velocity, path[-1])
+            return self.end.command(costmap, footprint, pose, velocity, path[-1])
         near = within(costmap, path)
         if not len(near):
             return None
         self.oscillation.at(pose)
-        for outline in footprints.to_leave_with(costmap, footprint, pose):
-            best = self._best(costmap, outline, pose, velocity, near, path[-1])
-            if best is not None:
-                return best
+        best = self._best(costmap, footprint, pose, velocity, near, path[-1])
+        if best is None:
             self.oscillation.reset()  # its constraint may exclude the only way out
-        return None
+        return best
 
     @abstractmethod
     def limits(self) -> Limits:
