@@ -1,7 +1,5 @@
 """What becomes of a workspace's packages, and what `make deps` and catkin_make say of it."""
 
-import os
-import shutil
 import time
 from pathlib import Path
 
@@ -165,43 +163,6 @@ def test_what_cmake_started_ends_with_it_at_the_limit(tmp_path, bare, monkeypatc
     while runs(int(pid.read_text())) and time.monotonic() < until:
         time.sleep(0.05)
     assert not runs(int(pid.read_text()))
-
-
-@pytest.fixture
-def compiler(tmp_path, monkeypatch) -> Path:
-    """A C++ compiler, before the machine's on the PATH; beside it a list of its calls."""
-    (tmp_path / "bin").mkdir()
-    for name in ("cc", "c++"):  # where CMake finds the one, it looks for the other first
-        compiler = tmp_path / "bin" / name
-        compiler.write_text(f'#!/bin/sh\necho "$@" >> "$0.calls"\nexec /usr/bin/{name} "$@"\n')
-        compiler.chmod(0o755)
-    monkeypatch.setenv("PATH", str(compiler.parent), prepend=os.pathsep)
-    return compiler
-
-
-def test_the_compilers_are_looked_at_once_for_all_packages(tmp_path, bare, compiler):
-    calls = []
-    for number in (1, 3):
-        source = tmp_path / str(number) / "src"
-        for each in range(number):
-            add_package(source, f"package_{each}")
-        assert all(verdict.builds for verdict in judge(source))
-        calls.append(Path(f"{compiler}.calls").read_text().count("CompilerId"))
-    assert 0 < calls[0] == calls[1] - calls[0]
-
-
-@pytest.mark.parametrize("choice", ["CMAKE_CXX_COMPILER", "ENV{CXX}"])
-def test_a_package_that_chooses_its_compiler_has_that(tmp_path, bare, compiler, choice):
-    source = tmp_path / "src"
-    add_package(source, "usual")
-    own = compiler.with_name("own")
-    shutil.copy(compiler, own)
-    text = (add_package(source, "choosing", cmake=(
-        f'if(NOT CMAKE_CXX_COMPILER STREQUAL "{own}")\nmessage(FATAL_ERROR "not mine")\nendif()'))
-        / "CMakeLists.txt")
-    text.write_text(text.read_text().replace("project(", f"set({choice} {own})\nproject("))
-    assert {verdict.name: verdict.stops for verdict in judge(source)} == {
-        "usual": {}, "choosing": {}}
 
 
 def runs(pid: int) -> bool:

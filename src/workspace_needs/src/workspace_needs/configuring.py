@@ -24,7 +24,6 @@ from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 from workspace_needs.build_cause import in_one_line
-from workspace_needs.compilers import find_compilers, give_compilers
 from workspace_needs.places import hook, kept_folder, package_folder
 from workspace_needs.workspace import Package, WorkspaceError
 
@@ -128,7 +127,6 @@ class _Run:
         self._graph = {name: graph[name] for name in packages}
         self._words = words
         self._processes: set[subprocess.Popen] = set()
-        self._compilers: Path | None = None
 
     def all(self) -> dict[str, Configured]:
         """By name, in as many processes at once as there are processors."""
@@ -138,7 +136,6 @@ class _Run:
         running: dict[Future, str] = {}
         with (tempfile.TemporaryDirectory(prefix="configured-") as place,
               ThreadPoolExecutor(os.cpu_count() or 1) as pool):
-            self._compilers = find_compilers(Path(place) / "compilers", self._words)
             try:
                 while sorter.is_active():
                     running |= {pool.submit(self._one, name, Path(place)): name
@@ -183,12 +180,11 @@ class _Run:
         build = place / "build" / name
         shutil.rmtree(build, ignore_errors=True)
         (build / QUERY).mkdir(parents=True)
-        known = give_compilers(self._compilers, build, self._packages[name].files)
         below = [str(place / "devel" / other)
                  for other in _with_dependencies(self._graph[name], self._graph)]
         prefixes = [*below, *os.environ.get("CMAKE_PREFIX_PATH", "").split(":")]
         command = ["cmake", str(self._packages[name].folder.resolve()), "-Wno-dev", *hook(),
-                   *self._words, *known, f"-DCATKIN_DEVEL_PREFIX={place / 'devel' / name}",
+                   *self._words, f"-DCATKIN_DEVEL_PREFIX={place / 'devel' / name}",
                    f"-DCMAKE_PREFIX_PATH={';'.join(filter(None, prefixes))}", *more]
         with subprocess.Popen(command, cwd=build, stdin=subprocess.DEVNULL, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
