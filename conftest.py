@@ -25,6 +25,7 @@ from run_tests_files import (  # noqa: F401  hooks
 
 if "PYTEST_XDIST_WORKER" not in os.environ:  # whose controller has made them
     runpy.run_path(str(ROOT / "src/sim/bullet_sim/src/bullet_sim/props.py"), run_name="__main__")
-    if not (ROOT / "src/compat/turtlebot3_gazebo/worlds").exists():  # after a `git pull`
-        subprocess.run([sys.executable, ROOT / "tools/makers", "turtlebot3_worlds"], check=True)
+    if (ROOT / "src/compat/turtlebot3_gazebo").is_dir():  # for after a `git pull`; takes 0.6 s
+        subprocess.run([sys.executable, "-B", ROOT / "tools/makers", "turtlebot3_worlds"],
+                       stdout=subprocess.DEVNULL, check=False)
 collect_ignore = sorted(map(str, rostest_scripts()))

@@ -6,4 +6,4 @@ rm -rf .venv .setup build devel install out/test .pytest_cache .ruff_cache .catk
 rm -rf src/sim/bullet_sim/src/bullet_sim/data/models src/compat/turtlebot3_gazebo/worlds
 for model in src/compat/turtlebot3_gazebo/models/*; do [ "${model##*/}" = turtlebot3_world ] || rm -rf "$model"; done
 [ ! -L src/CMakeLists.txt ] || rm -f src/CMakeLists.txt
-find src test scripts -name __pycache__ -type d -prune -exec rm -rf {} +
+find src test scripts tools -name __pycache__ -type d -prune -exec rm -rf {} +
