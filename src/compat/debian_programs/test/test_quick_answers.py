@@ -47,13 +47,20 @@ def answer(program: str, words: list[str], terminal: dict[str, str]) -> tuple[in
 
 @pytest.mark.parametrize("words", [*([*asked, package] for asked in ROSRUN for package in (
     *PACKAGES, "nested", "roscpp")), ["above"], ["--share", "both", "package.xml"],
-    ["--first-only", "no_package"], ["--without-underlays", "--share", "--first-only", "both"]],
+    ["--first-only", "no_package"], ["--without-underlays", "--share", "--first-only", "both"],
+    ["--without-underlays", "--share", "--help"], ["--without-underlays", "--share", "--lib"]],
     ids=" ".join)
 def test_the_answer_is_debians(terminal, words):
     wanted = answer(DEBIANS, words, terminal)
     assert answer(shutil.which("catkin_find"), words, terminal) == wanted
     if words[-1] in ("above", "both", "nested"):
         assert wanted[1].count("\n") >= 1
+
+
+def test_what_rospack_does_not_know_debians_finds(terminal):
+    words, unknown = [*ROSRUN[1], "above"], terminal | {"ROS_PACKAGE_PATH": ""}
+    wanted = answer(DEBIANS, words, unknown)
+    assert wanted[1] and answer(shutil.which("catkin_find"), words, unknown) == wanted
 
 
 @pytest.mark.parametrize("words", [["-d"], ["roslaunch"], ["rospy"], ["no_package"], []],

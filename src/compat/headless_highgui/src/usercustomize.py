@@ -102,11 +102,12 @@ def watch_standard():
         def __getattr__(name):
             if name.startswith("__"):
                 raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
-            from headless_highgui.old_names import amend_standard
+            from headless_highgui import old_names
 
+            old_names.HERE += (first_asked.__code__.co_filename,)  # by the link in the devel space
             for each in (collections, time):
                 del each.__getattr__
-            amend_standard()
+            old_names.amend_standard()
             return getattr(module, name)
 
         return __getattr__

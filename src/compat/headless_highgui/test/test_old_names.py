@@ -70,6 +70,16 @@ def test_an_old_name(tmp_path, code):
     assert new in lines[-1]
 
 
+def test_the_scripts_line_is_named_where_python_starts_with_a_link(tmp_path):
+    (tmp_path / "devel").mkdir()
+    (tmp_path / "devel/usercustomize.py").symlink_to(SOURCE / "usercustomize.py")
+    script = tmp_path / "old.py"
+    script.write_text("import collections\ncollections.Iterable\n")
+    done = subprocess.run([sys.executable, script], text=True, capture_output=True, timeout=100,
+                          env={"PYTHONPATH": f"{tmp_path}/devel:{SOURCE}:{LANGUAGE}"})
+    assert done.stderr.startswith(f"{script}:2: ")
+
+
 def test_it_is_said_once(tmp_path):
     done = run(tmp_path, "import numpy as np\nfor _ in range(3):\n    np.float(1)\n")
     assert done.stderr.count("is old") == 1

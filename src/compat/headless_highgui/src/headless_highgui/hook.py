@@ -1,6 +1,6 @@
 """Puts our window functions into cv2 where its own cannot work; says what is there for Tk's.
 
-And lets cv_bridge swap red and blue by OpenCV: its own way takes three times as long.
+And lets cv_bridge swap red and blue by OpenCV: its own way takes twice as long.
 """
 
 import os
