@@ -91,12 +91,12 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
      "mapping 12.0 s | 路点 3/5，还差 1.2 m | 已行驶 3.0 m | 碰撞 0 次 | 真实时间的 1.00 倍"),
     ("gz: Unable to find file 'a.sdf'", "gz: 找不到文件 'a.sdf'"),
     ("FAIL  time between two messages, the worst: 0 s, wanted 0.5 s ± 0.01 s",
-         "未过  两条消息之间的时间，最差的: 0 s，要求 0.5 s ± 0.01 s"),
-        ("pass  commanded speed (after rosparam set /a/speed 2): 2 m/s, wanted at least 1 m/s",
-         "通过  命令的速度（rosparam set /a/speed 2 之后）: 2 m/s，要求至少 1 m/s"),
-        ("a/0: 94.1 points, closed: 0.9 points: 3.4 cm RMS beside the line (all points at 3 cm)",
-         "a/0: 94.1 分，跑完: 0.9 分: 偏离线 3.4 厘米（均方根；3 厘米得满分）"),
-        ("check: x: no such file or package (did you mean y?); try `rospack list`, or give a path",
+     "未过  两条消息之间的时间，最差的: 0 s，要求 0.5 s ± 0.01 s"),
+    ("pass  commanded speed (after rosparam set /a/speed 2): 2 m/s, wanted at least 1 m/s",
+     "通过  速度指令（rosparam set /a/speed 2 之后）: 2 m/s，要求至少 1 m/s"),
+    ("a/0: 94.1 points, closed: 0.9 points: 3.4 cm RMS beside the line (all points at 3 cm)",
+     "a/0: 94.1 分，跑完: 0.9 分: 偏离线 3.4 厘米（均方根；3 厘米得满分）"),
+    ("check: x: no such file or package (did you mean y?); try `rospack list`, or give a path",
      "check: x: 没有这个文件或包（是不是 y？）；试试 `rospack list`，或给出路径")])
 def test_the_shipped_catalogue_has(english, chinese):
     assert read_catalogue("zh_CN").translate(english) == chinese
