@@ -11,16 +11,8 @@ from dataclasses import Field, dataclass, fields, replace
 from types import SimpleNamespace
 from typing import Any, TypeVar
 
-import roslib
 import rospy
-
-# Debian's package searches all packages at its import, for modules that rosbuild's had elsewhere
-# than on the PYTHONPATH: a tenth of the simulator's start.
-_load_manifest, roslib.load_manifest = roslib.load_manifest, lambda name: None
-try:
-    from dynamic_reconfigure.server import Server
-finally:
-    roslib.load_manifest = _load_manifest
+from dynamic_reconfigure.server import Server
 
 Settings = TypeVar("Settings")
 TYPES = {float: "double", bool: "bool", int: "int", str: "str"}

@@ -18,7 +18,8 @@ from typing import Any
 
 import rospy
 import yaml
-from node_basics.reconfigure import Entry, EntryServer, Server
+from dynamic_reconfigure.server import Server
+from node_basics.reconfigure import Entry, EntryServer
 
 KINDS = {"bool": bool, "int": int, "double": float, "str": str, "list": list}
 
