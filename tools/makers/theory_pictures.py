@@ -25,7 +25,7 @@ from lane_keeping.road_view import road_view
 from lane_keeping.settings import load_settings
 from matplotlib import pyplot as plt
 
-from exercises.checks import lane, stop
+from exercises.checks import laws, simulated
 
 TOPIC = Path(__file__).resolve().parents[2] / "src" / "learning_topic"
 sys.path.insert(0, str(TOPIC / "test"))
@@ -174,9 +174,9 @@ matplotlib.use("Agg")
 def windows(axes):
     """The lane: mask, windows, the two fitted lines and the middle between them."""
     settings = load_settings(find_file("lane_keeping/config/lane_keeping.yaml"))
-    picture = next(seen for place, (_, seen) in enumerate(lane.pictures(40)) if place == 13)
+    picture = next(seen for place, (_, seen) in enumerate(simulated.pictures(40)) if place == 13)
     mask = line_mask(picture, settings)
-    found = plan(mask, road_view(settings, *lane.SIZE), settings)
+    found = plan(mask, road_view(settings, *simulated.LANE_SIZE), settings)
     axes.imshow(255 - mask // 2, cmap="gray", vmin=0, vmax=255)
     for left, top, right, bottom in found.lane.marks.boxes:
         axes.add_patch(plt.Rectangle((left, top), right - left, bottom - top, fill=False,
@@ -187,8 +187,9 @@ def windows(axes):
         rows = np.linspace(*side.rows, 60)
         axes.plot(np.polyval(side.curve, rows), rows, color=colour, lw=2, label=name)
     axes.plot(*found.target, "o", color=YELLOW, mec="k", label="look-ahead row")
-    axes.axvline(lane.SIZE[0] / 2, color=GREY, ls="--")
-    axes.set(xlim=(0, lane.SIZE[0]), ylim=(len(mask), 0), xlabel="column, px", ylabel="row, px")
+    axes.axvline(simulated.LANE_SIZE[0] / 2, color=GREY, ls="--")
+    axes.set(xlim=(0, simulated.LANE_SIZE[0]), ylim=(len(mask), 0), xlabel="column, px",
+             ylabel="row, px")
     axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
 
 
@@ -196,13 +197,13 @@ def distance(axes):
     """The tracker: how far away a cylinder of so many px is, by its height and by its width."""
     away, seen = np.arange(0.8, 5.01, 0.2), []
     for each in away:
-        picture = stop.view(each, 0.0)
+        picture = laws.view(each, 0.0)
         blob = find_blobs(red_mask(picture, Colour(0, 10, 100, 100)), 6)[0]
-        seen.append((blob.height, distance_of(blob, picture.shape[:2], stop.HFOV, stop.RADIUS,
-                                              stop.TALL)))
+        seen.append((blob.height, distance_of(blob, picture.shape[:2], laws.HFOV, laws.RADIUS,
+                                              laws.TALL)))
     heights, found = np.array(seen).T
     px = np.linspace(heights.min(), heights.max(), 200)
-    axes.plot(px, stop.FOCAL * stop.TALL / px + stop.RADIUS, color=GREY, label="f · H / h + r")
+    axes.plot(px, laws.FOCAL * laws.TALL / px + laws.RADIUS, color=GREY, label="f · H / h + r")
     axes.plot(heights, found, "o", ms=4, color=RED, label="distance_of, on drawn pictures")
     axes.set(xlabel="height h in the picture, px", ylabel="distance d, m")
     axes.legend()
