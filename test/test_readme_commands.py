@@ -169,11 +169,11 @@ def test_make_refuses_what_the_verb_does_not_take(words: str, unknown: str) -> N
 def test_clean_forgets_what_was_made(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "scripts", tmp_path / "scripts")
     shutil.copy(ROOT / "Makefile", tmp_path)
-    for made in (".venv", "build", "devel", ".setup", "src", "test", "out/course"):
+    for made in (".venv", "build", "devel", ".setup", "src", "test", "tools", "out/course"):
         (tmp_path / made).mkdir(parents=True)
     subprocess.run(["make", "clean"], cwd=tmp_path, check=True, capture_output=True)
     left = {path.name for path in tmp_path.iterdir()}
-    assert left == {"Makefile", "out", "scripts", "src", "test"}
+    assert left == {"Makefile", "out", "scripts", "src", "test", "tools"}
 
 
 def test_commands_are_found() -> None:
