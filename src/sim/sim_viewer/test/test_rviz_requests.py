@@ -11,6 +11,7 @@ from geometry_msgs.msg import TransformStamped, Vector3
 from rviz_messages import turned
 from sim_viewer.options import Options
 from sim_viewer.registry import Context, Node, Refused
+from sim_viewer.rviz import tools
 from sim_viewer.rviz.display import Display, Displays
 from sim_viewer.rviz.display_type import Problem
 from sim_viewer.rviz.page import rviz_config, rviz_types
@@ -126,26 +127,28 @@ def test_tools_are_refused_what_is_no_topic_and_places_that_are_far_off(context)
 
 
 class SlowPublisher:
-    """One whose first listener connects after some looks."""
+    """One whose two subscribers connect one after the other."""
 
     def __init__(self, name, kind, queue_size):
         self.looks, self.sent = 0, []
 
     def get_num_connections(self):
         self.looks += 1
-        return int(self.looks > 3)
+        return min(self.looks // 3, 2)
 
     def publish(self, message):
         self.sent.append((message, self.looks))
 
 
-def test_a_click_right_after_the_tool_was_taken_waits_for_who_listens(context, monkeypatch):
+def test_a_click_right_after_the_tool_was_taken_waits_for_all_who_listen(context, monkeypatch):
+    monkeypatch.setattr(tools, "connect", lambda: SimpleNamespace(getSystemState=lambda: [
+        [], [["/clicked_point", ["/sim_viewer", "/listener"]]], []]))
     publishers = context.node.shared(Publishers)
     key = "point", "/clicked_point"
     publishers._publishers[key] = SlowPublisher(*key, 1), time.monotonic() + 60.0  # being opened
-    assert publishers.publish(*key, "map", (1.0, 2.0, 0.0, 0.0)) == 1
+    assert publishers.publish(*key, "map", (1.0, 2.0, 0.0, 0.0)) == 2
     ((message, looks),) = publishers._publishers[key][0].sent
-    assert looks > 3 and message.header.frame_id == "map"
+    assert looks >= 6 and message.header.frame_id == "map"
 
 
 # --- frames

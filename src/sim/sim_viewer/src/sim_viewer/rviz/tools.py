@@ -30,12 +30,13 @@ from sim_viewer.rviz.displays.interactive import Interactive, namespace
 from sim_viewer.rviz.displays.interactive_marker import LARGEST, InteractiveMarker, unit_pose
 from sim_viewer.rviz.geometry import pose_row, row_pose
 from sim_viewer.tools.clock import SharedClock
+from sim_viewer.tools.master import asked, connect
 from sim_viewer.tools.names import is_topic
 
 POSITION_VARIANCE = 0.5 * 0.5  # m^2, as rviz has it
 YAW_VARIANCE = 0.06853891945200942  # rad^2: (pi / 12)^2
 QUEUE = 100  # messages queued for a slow subscriber
-CONNECTING = 1.0  # s to wait for subscribers, so that the first click is not lost
+CONNECTING = 2.0  # s to wait for subscribers, so that the first click is not lost
 FARTHEST = 1e6  # m
 EVENTS = {name: getattr(InteractiveMarkerFeedback, name) for name in (
     "KEEP_ALIVE", "POSE_UPDATE", "MENU_SELECT", "BUTTON_CLICK", "MOUSE_DOWN", "MOUSE_UP")}
@@ -70,6 +71,12 @@ TOOLS: dict[str, tuple[type, Callable[..., Any]]] = {
     "point": (PointStamped, point)}
 
 
+def subscriber_count(topic: str) -> int:
+    """The number of subscribers that the master lists; Refused if it is gone."""
+    _, subscribers, _ = asked(connect().getSystemState)
+    return len(dict(subscribers).get(topic, []))
+
+
 class Publishers:
     """A publisher for each use and topic, opened at its first use. In worker threads."""
 
@@ -81,7 +88,8 @@ class Publishers:
         self._closing = contextlib.ExitStack()
 
     def open(self, tool: str, topic: str) -> rospy.Publisher:
-        """Get ready to publish; Refused for an unknown tool or an illegal topic name."""
+        """Get ready to publish; Refused for an unknown tool, an illegal topic name or a
+        master that is gone."""
         if tool not in TOOLS:
             raise Refused(f"there is no tool {tool!r:.40}; there are {', '.join(TOOLS)}")
         return self.open_topic(tool, topic, TOOLS[tool][0])
@@ -98,7 +106,9 @@ class Publishers:
                 made = rospy.Publisher(key[1], kind, queue_size=QUEUE)
                 self._publishers[key] = made, time.monotonic() + CONNECTING
         publisher, until = self._publishers[key]
-        while not publisher.get_num_connections() and time.monotonic() < until:
+        # All that the master lists, not only the first: the page itself may be the first.
+        wanted = subscriber_count(key[1]) if time.monotonic() < until else 0
+        while publisher.get_num_connections() < wanted and time.monotonic() < until:
             time.sleep(0.02)
         return publisher
 
