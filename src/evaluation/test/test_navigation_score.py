@@ -12,15 +12,13 @@ from evaluation.navigate import NavigationRun
 from evaluation.navigate_parts import keep_map, place_for_map, read_map_frame
 from evaluation.navigate_pictures import CLEAR, map_picture
 from evaluation.navigate_score import (
-    Navigation,
-    Pace,
     Result,
-    Way,
     lines,
     localisation,
-    score_mapping,
+    mapping_figures,
     seen_of,
     summarize,
+    way,
 )
 from evaluation.picture import bgr, lap_colour
 from nav_algorithms.cells import OCCUPIED, UNKNOWN, OccupancyGrid
@@ -30,19 +28,28 @@ from run_session.files import find_package
 from trial_worlds.feelers import Gap
 from trial_worlds.house import Ground
 
-PACE = Pace(100.0, 200.0, {"move_base": 40.0})
+PACE = {"simulated_s": 100.0, "wall_s": 200.0, "real_time_factor": 0.5,
+        "cpu_percent_of_a_core": {"move_base": 40.0}}
 SHIFT = np.array([0.5, -0.2, 0.3])  # the map's frame in the world's
 ANGLES = np.arange(360) * np.pi / 180
 
 
-def goals(ways, place, **seen) -> Navigation:
+def goals(ways, place, **seen) -> Result:
     """The goals of a run in which nothing was touched."""
-    usual = dict(contacts=[], nearest=0.1, unseen=0.04, driven=4.2, pace=PACE)
-    return Navigation(ways=ways, localisation=place, **{**usual, **seen})
+    usual = dict(contacts=[], nearest_m=0.1, longest_unseen_s=0.04, distance_m=4.2)
+    return Result(navigation={**PACE, **usual, **seen, **place, "goals": ways})
 
 
-def way(reached: bool = True, text: str = "Goal reached.") -> Way:
-    return Way((1.0, 2.0, 0.5), reached, text, 20.0, 4.2, 3.0, 4.0, 0.03, 0.1)
+def drive(reached: bool = True, text: str = "Goal reached.", off_yaw: float = 0.1) -> dict:
+    return way((1.0, 2.0, 0.5), (1.03, 2.0, 0.5 + off_yaw), reached, text, time_s=20.0,
+               straight_s=11.5, shortest_s=15.4, driven_m=4.2)
+
+
+def mapping(ground: Ground, built: OccupancyGrid, records: Records, ways: list[dict]) -> Result:
+    """The mapping part, judged by the map and the records."""
+    figures, there = mapping_figures(ground, built, records, ANGLES, 3.0)
+    return Result(built, there,
+                  {**PACE, **seen_of(records), **figures, "way_points": ways})
 
 
 @pytest.fixture(scope="module")
@@ -124,21 +131,24 @@ def test_errors_of_localisation_are_taken_in_the_world():
     errors = records.errors(0.4, SHIFT)[1]
     assert errors == pytest.approx(np.tile([0.05, 0.1], (6, 1)))
     found = localisation((0.2, 0.1), errors)
-    for error in (found.mean, found.largest, found.found):
-        assert error == pytest.approx((0.05, 0.1))
-    part = goals([way()], found)
+    for error in ("mean_off", "largest_off", "found_off"):
+        assert found[error] == {"m": 0.05, "deg": 5.73}
+    part = goals([drive()], found)
     assert part.faults == ["localisation: 5.0 cm and 5.7° off in the mean, more than 5.0 cm and 2°"]
-    assert localisation(None, errors[:0]).mean == (np.inf, np.inf)  # nothing known is no success
+    unknown = localisation(None, errors[:0])
+    assert unknown["mean_off"] == {"m": None, "deg": None}
+    assert goals([drive()], unknown).faults  # nothing known is no success
 
 
 def test_a_right_map_in_a_frame_of_its_own_has_no_fault(ground):
     walls, shift = ground.walls, np.array([0.52, -0.21, 0.0])
     built = OccupancyGrid(walls.cells, walls.resolution, tuple(walls.origin - shift[:2]))
     records = records_of(round_of(ground), map_in_world=shift)
-    part = score_mapping(ground, built, records, ANGLES, 3.0, [way()], PACE)
-    assert part.faults == [] and part.trajectory.ate_rmse == pytest.approx(0.0, abs=1e-6)
-    assert part.agreement.walls_found == 1.0 and part.agreement.wall_cells > 1500
-    assert 100.0 < part.known < 160.0  # m^2
+    part = mapping(ground, built, records, [drive()])
+    assert part.faults == [] and part.mapping["ate_rmse_m"] == 0.0
+    assert part.map_in_world == pytest.approx(shift, abs=1e-6)
+    assert part.mapping["walls_found"] == 1.0 and part.mapping["wall_cells"] > 1500
+    assert 100.0 < part.mapping["known_m2"] < 160.0
 
 
 def test_each_fault_of_a_mapping_round_is_a_line(ground):
@@ -150,8 +160,8 @@ def test_each_fault_of_a_mapping_round_is_a_line(ground):
     cells[:, 150:] = UNKNOWN  # half of the house is not on the map
     cells[100:110, 20:40] = OCCUPIED  # and something that is not there
     built = OccupancyGrid(cells, ground.walls.resolution, ground.walls.origin)
-    ways = [way(), way(False, "time is up")]
-    faults = score_mapping(ground, built, records, ANGLES, 3.0, ways, PACE).faults
+    ways = [drive(), drive(False, "time is up")]
+    faults = mapping(ground, built, records, ways).faults
     wanted = (r"mapping: trajectory error 10\.0 cm, more than 5\.0 cm",
               r"mapping: occupied cells near true walls [89]\d\.\d%, less than 95%",
               r"mapping: seen walls on the map [3-6]\d\.\d%, less than 95%",
@@ -165,17 +175,16 @@ def test_what_was_not_looked_at_is_not_called_right(ground):
     """On a machine that is too busy."""
     records = records_of(round_of(ground)[:6])
     records.truth = [(9 * number, *pose) for number, (_, *pose) in enumerate(records.truth)]
-    part = goals([way()], localisation(None, np.zeros((1, 2))), **seen_of(records))
+    part = goals([drive()], localisation(None, np.zeros((1, 2))), **seen_of(records))
     assert [fault for fault in part.faults if "nobody looked for 9.0 s" in fault] == part.faults
     records.truth = [(99.0, 0.0, 0.0, 0.0)]
     with pytest.raises(RunError, match="too busy"):
-        score_mapping(ground, ground.walls, records, ANGLES, 3.0, [way()], PACE)
+        mapping_figures(ground, ground.walls, records, ANGLES, 3.0)
 
 
 def test_a_goal_that_is_only_called_reached_is_a_fault():
     place = localisation(None, np.zeros((1, 2)))
-    beside = Way((1.0, 2.0, 0.5), True, "Goal reached.", 20.0, 4.2, 3.0, 4.0, 0.03, 1.6)
-    assert goals([way(), beside], place).faults == [
+    assert goals([drive(), drive(off_yaw=1.6)], place).faults == [
         "goal 2 (1.00, 2.00) called reached, but 3.0 cm and 92° off"]
 
 
@@ -196,17 +205,18 @@ def test_report_table_and_picture_of_a_run(tmp_path, ground):
     records = records_of(round_of(ground))
     errors = records.errors(0.0, SHIFT)[1]
     place = localisation((0.2, 0.1), errors)
-    missed = way(False, "Failed to find a valid plan. Even after executing recovery behaviors.")
-    result = Result(ground.walls, np.zeros(3), None, goals([way(), missed], place, driven=8.4))
+    missed = drive(False, "Failed to find a valid plan. Even after executing recovery behaviors.")
+    result = goals([drive(), missed], place, distance_m=8.4)
+    result.map = ground.walls
     result.paths["goals"] = np.array(records.truth)[:, 1:3]
     options = NavigationRun.parse(["--goals", "2", "--seed", "7", "--out", str(tmp_path)])
     report = json.loads(json.dumps(summarize(options, ("not passed", "why"), result)))
     assert report["goals_reached"] == 1 and report["goals_wanted"] == 2 and report["seed"] == 7
     first = report["navigation"]["goals"][0]
-    assert first["time_s"] == 20.0 and first["straight_s"] == pytest.approx(3.0 / 0.26, abs=0.05)
+    assert first["time_s"] == 20.0 and first["straight_s"] == 11.5
     assert report["navigation"]["cpu_percent_of_a_core"] == {"move_base": 40.0}
     assert report["navigation"]["real_time_factor"] == 0.5
-    table = lines(options, result)
+    table = lines(result)
     assert table[1].split()[:4] == ["1", "1.00", "2.00", "yes"]
     assert "Failed to find a valid plan." in table[2]
     picture = map_picture(ground, result, "title", "figures")

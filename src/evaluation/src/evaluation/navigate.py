@@ -10,11 +10,11 @@ import numpy as np
 from evaluation.command_line import LARGEST_SEED, Parser
 from evaluation.house import Watch, load_house
 from evaluation.live import LiveDrive, Outcome
-from evaluation.navigate_parts import MappingPart, NavigationPart, read_map_frame
+from evaluation.navigate_parts import Part, map_house, read_map_frame, visit_goals
 from evaluation.navigate_pictures import Film, map_picture
-from evaluation.navigate_score import Result, lines, summarize
+from evaluation.navigate_score import Result, lines, reached, summarize
 from evaluation.picture import write_png
-from evaluation.report import write_json
+from evaluation.report import cell, write_json
 from map_server.errors import MapFileError
 from map_server.map_files import read_map
 from run_session.failure import RunError
@@ -83,12 +83,12 @@ class NavigationRun(LiveDrive):
         map_file = self.options.map
         if map_file is None:
             self._tell("mapping: slam_gmapping, move_base to way-points")
-            part = MappingPart(*everybody)
-            part.run(self.result)
+            part = Part("mapping", *everybody)
+            map_house(part, self.result)
             part.end()
             map_file = self.out / "map.yaml"
         self._tell(f"{len(self._goals)} goals: map_server, amcl, move_base")
-        NavigationPart(*everybody).run(self.result, str(map_file), self._goals)
+        visit_goals(Part("goals", *everybody), self.result, str(map_file), self._goals)
         faults = self.result.faults
         return ("not passed", "; ".join(faults)) if faults else ("passed", "")
 
@@ -111,7 +111,7 @@ class NavigationRun(LiveDrive):
         picture = map_picture(self._ground, self.result, *_titles(self.options, self.result))
         write_png(self.out / "map.png", picture)
         write_json(report, self.out / "report.json")
-        return lines(self.options, self.result)
+        return lines(self.result)
 
     def _tell(self, title: str) -> None:
         if self.film is not None:
@@ -120,17 +120,14 @@ class NavigationRun(LiveDrive):
 
 def _titles(options: argparse.Namespace, result: Result) -> tuple[str, str]:
     """Title and subtitle (with figures) of the picture."""
-    reached = sum(way.reached for way in result.navigation.ways) if result.navigation else 0
     figures = []
-    if result.mapping:
-        agreement = result.mapping.agreement
-        figures += [f"mapping ATE {result.mapping.trajectory.ate_rmse * 100:.1f} cm",
-                    f"map {agreement.occupied_near_walls:.1%} right, "
-                    f"{agreement.walls_found:.1%} found"]
-    if result.navigation:
-        mean = result.navigation.localisation.mean
-        figures += [f"localised to {mean[0] * 100:.1f} cm, {np.degrees(mean[1]):.1f} deg",
-                    f"{result.navigation.driven:.1f} m driven"]
-    touched = sum(len(part.contacts) for part in (result.mapping, result.navigation) if part)
-    figures.append(f"touched {touched}")
-    return f"{reached} of {options.goals} goals reached", "   |   ".join(figures)
+    if mapping := result.mapping:
+        figures += [f"mapping ATE {mapping['ate_rmse_m'] * 100:.1f} cm",
+                    f"map {mapping['occupied_near_walls']:.1%} right, "
+                    f"{mapping['walls_found']:.1%} found"]
+    if part := result.navigation:
+        off = part["mean_off"]
+        figures += [f"localised to {cell(off['m'], 100)} cm, {cell(off['deg'])} deg",
+                    f"{part['distance_m']:.1f} m driven"]
+    figures.append(f"touched {sum(len(part['contacts']) for part in result.parts)}")
+    return f"{reached(result)} of {options.goals} goals reached", "   |   ".join(figures)

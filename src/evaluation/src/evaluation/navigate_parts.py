@@ -19,10 +19,10 @@ from terminal_language import heading
 from evaluation import navigate_score
 from evaluation.house import MAP, Watch, told_pose
 from evaluation.live import LiveDrive
-from evaluation.navigate_score import Way
+from evaluation.navigate_score import Result
 from evaluation.report import write_json
 from map_server.map_files import read_map
-from nav_algorithms.poses import compose, invert, relative, wrap_angle
+from nav_algorithms.poses import compose, invert
 from run_session.launch import Launched
 from run_session.processes import Child, CpuMeter
 from run_session.simulator import pose_message
@@ -66,93 +66,11 @@ TURN_RATE = 0.6  # rad/s
 STANDING = 0.3  # s, simulated, at a goal before the pose is measured
 DONE = (actionlib.CommState.DONE, actionlib.CommState.LOST)
 TIME_IS_UP = "time is up"
-
-Look = Callable[[str], None]  # waits a little, checks that everything still runs, shows progress
-
-
-class Driver:
-    """Drives on a map; `map_in_world` (3,) is the pose of its frame in the world."""
-
-    def __init__(self, watch: Watch, ground: Ground, look: Look, map_in_world: np.ndarray,
-                 max_speed: float):
-        self._watch, self._ground, self._look = watch, ground, look
-        self._map_in_world, self._max_speed = map_in_world, max_speed
-        self._client = actionlib.ActionClient("/move_base", MoveBaseAction)
-        self._commands = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
-        self._told = rospy.Publisher("/initialpose", PoseWithCovarianceStamped, queue_size=1)
-
-    @property
-    def is_connected(self) -> bool:
-        """Whether move_base's action server is connected."""
-        return self._client.wait_for_server(rospy.Duration(0.01))
-
-    @property
-    def is_heard(self) -> bool:
-        """Whether there are subscribers to initial poses (localisation) and velocity commands."""
-        return min(self._told.get_num_connections(), self._commands.get_num_connections()) > 0
-
-    def drive_to(self, goal: np.ndarray, what: str) -> Way:
-        """Send the goal (3,), in the world's frame; return when move_base is done or time is up."""
-        records = self._watch.records
-        start, began, before = records.true_pose, records.now, records.length
-        shortest = self._ground.shortest_way(start, goal)
-        until = began + LIMIT + LIMIT_FACTOR * min(shortest, 100.0) / self._max_speed
-        sent = self._client.send_goal(self._goal(goal))
-        text = None
-        while sent.get_comm_state() not in DONE:
-            left = np.linalg.norm(records.true_pose[:2] - goal[:2])
-            self._look(f"{what}, {left:.1f} m off")
-            if records.now > until and text is None:
-                text, until = TIME_IS_UP, records.now + CANCEL_LIMIT
-                sent.cancel()
-            elif records.now > until:
-                break
-        took = records.now - began
-        self._let_stand()
-        reached = text is None and sent.get_goal_status() == GoalStatus.SUCCEEDED
-        end = records.true_pose
-        return Way(
-            tuple(goal.tolist()), reached, text or sent.get_goal_status_text(),
-            took, records.length - before,
-            float(np.linalg.norm(goal[:2] - start[:2])), shortest,
-            float(np.linalg.norm(end[:2] - goal[:2])), float(abs(wrap_angle(end[2] - goal[2]))))
-
-    def tell_pose(self, pose: np.ndarray) -> None:
-        """Publish an initial pose (3,), in the world's frame, as rviz's 2D Pose Estimate does."""
-        on_map = compose(invert(self._map_in_world), pose)
-        self._told.publish(told_pose(on_map, self._watch.records.now))
-
-    def turn_round(self, what: str) -> None:
-        """Turn once on the spot, timed by simulated time."""
-        records = self._watch.records
-        until = records.now + 2 * np.pi / TURN_RATE
-        command = Twist()
-        command.angular.z = TURN_RATE
-        while records.now < until:
-            self._commands.publish(command)
-            self._look(what)
-        self._commands.publish(Twist())
-
-    def _let_stand(self) -> None:
-        """Wait until the robot's resting pose has been observed."""
-        until = self._watch.records.now + STANDING
-        while self._watch.records.now < until:
-            self._look(heading("standing"))
-
-    def _goal(self, goal: np.ndarray) -> MoveBaseGoal:
-        on_map = compose(invert(self._map_in_world), goal)
-        message = MoveBaseGoal()
-        message.target_pose.header.frame_id = MAP
-        message.target_pose.header.stamp = rospy.Time.from_sec(self._watch.records.now)
-        message.target_pose.pose = pose_message(tuple(on_map.tolist()))
-        return message
-
-
 LOOK_PERIOD = 0.05  # s, wall
 END_LIMIT = 30.0  # s, wall, for all nodes of one launch file to end
 SAVE_LIMIT = 60.0  # s, wall, for map_saver
 LAST_MAP_LIMIT = 3.0  # s, simulated; slam_gmapping's map comes every 2 s
-TOLD_OFF, TOLD_OFF_YAW = 0.3, 0.26  # m in x and y, and rad: largest error of the initial pose
+TOLD_OFF = (0.3, 0.3, 0.26)  # m in x and y, and rad: largest error of the initial pose
 SIMULATOR = ("roslaunch", "evaluation", "house.launch")
 SLAM = ("roslaunch", "turtlebot3_slam", "turtlebot3_slam.launch", "slam_methods:=gmapping",
         "open_rviz:=false")
@@ -161,65 +79,138 @@ NAVIGATION = ("roslaunch", "evaluation", "navigation.launch")
 
 
 class Part:
-    """Shared by both parts: start programs, wait for them, supervise them, end them."""
+    """One part of the run: its programs, and the robot that they drive on a map."""
 
-    name = ""
-
-    def __init__(self, run: LiveDrive, ground: Ground, watch: Watch, launched: Launched):
-        self._run, self._ground, self._watch, self._launched = run, ground, watch, launched
-        self._options, self._progress = run.options, run.progress
+    def __init__(self, name: str, run: LiveDrive, ground: Ground, watch: Watch, launched: Launched):
+        self.name, self.ground, self.watch, self.options = name, ground, watch, run.options
+        self._progress, self._launched = run.progress, launched
         self._children: list[Child] = []
-        self._began, self._begin_time = time.monotonic(), 0.0  # s: wall, simulated
-        self._driver: Driver | None = None
-        self._cpu: CpuMeter | None = None
 
-    def _start(self, *commands: tuple[str, ...]) -> None:
-        """Start programs, the simulator first, with new records."""
-        self._watch.begin()
-        house, options = self._options.house, self._options
+    def start(self, *commands: tuple[str, ...]) -> None:
+        """Start programs, the simulator first, with new records; wait for map and localisation."""
+        self.watch.begin()
+        house, options = self.options.house, self.options
         x, y, yaw = house.start
         self._start_one(
             "simulator", *SIMULATOR, f"world_name:={house.world_path}", f"x_pos:={x}",
             f"y_pos:={y}", f"yaw:={yaw}", f"model:={house.model}", f"seed:={options.seed}",
             f"real_time_factor:={options.real_time_factor:g}")
-        self._wait_for("the robot in the simulator", lambda: self._watch.records.truth)
-        self._watch.feelers = self._ground.feelers(rospy.get_param("/robot_description"))
+        self.wait_for("the robot in the simulator", lambda: self.watch.records.truth)
+        self.watch.feelers = self.ground.feelers(rospy.get_param("/robot_description"))
         for number, command in enumerate(commands, start=1):
             self._start_one(f"navigation-{number}", *command, f"model:={house.model}")
+        self.wait_for("the map and the transform map to odom",
+                      lambda: self.watch.map is not None and self.watch.records.believed)
 
     def _start_one(self, name: str, *command: str) -> None:
         self._children.append(self._launched.start(f"{self.name}-{name}", list(command)))
 
-    def _wait_for(self, what: str, condition: Callable[[], object]) -> None:
-        self._launched.wait_for(what, condition, self._options.startup_timeout,
+    def wait_for(self, what: str, condition: Callable[[], object]) -> None:
+        """Returns once the condition is true; RunError if that takes too long."""
+        self._launched.wait_for(what, condition, self.options.startup_timeout,
                                 lambda text: self._progress.status(f"{self.name}: {text}"))
 
-    def _connect(self, map_in_world: np.ndarray) -> Driver:
-        self._driver = Driver(self._watch, self._ground, self._look, map_in_world,
-                              self._options.house.max_speed)
-        self._wait_for("move_base", lambda: self._driver.is_connected)
-        return self._driver
+    def connect(self, map_in_world: np.ndarray) -> None:
+        """Wait for move_base; `map_in_world` (3,) is the pose of the map's frame in the world."""
+        self._map_in_world = map_in_world
+        self._client = actionlib.ActionClient("/move_base", MoveBaseAction)
+        self._commands = rospy.Publisher("/cmd_vel", Twist, queue_size=1)
+        self._told = rospy.Publisher("/initialpose", PoseWithCovarianceStamped, queue_size=1)
+        self.wait_for("move_base", lambda: self._client.wait_for_server(rospy.Duration(0.01)))
 
-    def _begin(self) -> None:
+    def begin(self) -> None:
         """From here on the robot may drive; time and CPU use are counted."""
-        self._cpu = CpuMeter()
-        self._began, self._begin_time = time.monotonic(), self._watch.records.now
-        self._watch.records.begun = self._begin_time
+        self._cpu, self._began = CpuMeter(), time.monotonic()
+        self.watch.records.begun = self.watch.records.now
 
-    def _pace(self) -> navigate_score.Pace:
-        simulated = self._watch.records.now - self._begin_time
-        wall = time.monotonic() - self._began
-        used = self._cpu.look()  # percent of a core in wall time
-        share = {name: round(percent * wall / max(simulated, 1e-9), 1)
-                 for name, percent in sorted(used.items(), key=lambda item: -item[1])}
-        return navigate_score.Pace(simulated, wall, share)
+    def figures(self) -> dict:
+        """How long it took since `begin`, what the processes used, and what was seen."""
+        records, wall = self.watch.records, time.monotonic() - self._began
+        simulated = records.now - records.begun
+        share = {name: round(percent * wall / max(simulated, 1e-9), 1)  # s in 100 simulated s
+                 for name, percent in sorted(self._cpu.look().items(), key=lambda item: -item[1])}
+        return {"simulated_s": round(simulated, 1), "wall_s": round(wall, 1),
+                "real_time_factor": round(simulated / wall, 3) if wall > 0 else 0.0,
+                "cpu_percent_of_a_core": share, **navigate_score.seen_of(records)}
 
-    def _look(self, what: str) -> None:
+    def look(self, what: str) -> None:
         """Waits a little, checks that everything still runs, shows progress."""
         time.sleep(LOOK_PERIOD)
-        records = self._watch.records
-        self._launched.check_time(records.now, self._options.stuck_timeout)
+        records = self.watch.records
+        self._launched.check_time(records.now, self.options.stuck_timeout)
         records.show(self._progress, self.name, what)
+
+    def look_for(self, seconds: float, what: str, command: Twist | None = None) -> None:
+        """Look for so long, s, simulated, and meanwhile drive by the command."""
+        until = self.watch.records.now + seconds
+        while self.watch.records.now < until:
+            if command is not None:
+                self._commands.publish(command)
+            self.look(what)
+
+    def drive_to(self, goal: np.ndarray, what: str) -> dict:
+        """Send the goal (3,), in the world's frame; its figures when move_base is done or time is
+        up."""
+        records, speed = self.watch.records, self.options.house.max_speed
+        start, began, before = records.true_pose, records.now, records.length
+        shortest = self.ground.shortest_way(start, goal)
+        until = began + LIMIT + LIMIT_FACTOR * min(shortest, 100.0) / speed
+        sent = self._client.send_goal(self._goal(goal))
+        text = None
+        while sent.get_comm_state() not in DONE:
+            left = np.linalg.norm(records.true_pose[:2] - goal[:2])
+            self.look(f"{what}, {left:.1f} m off")
+            if records.now > until and text is None:
+                text, until = TIME_IS_UP, records.now + CANCEL_LIMIT
+                sent.cancel()
+            elif records.now > until:
+                break
+        took = records.now - began
+        self.look_for(STANDING, heading("standing"))  # until the resting pose has been observed
+        return navigate_score.way(
+            goal.tolist(), records.true_pose,
+            text is None and sent.get_goal_status() == GoalStatus.SUCCEEDED,
+            text or sent.get_goal_status_text(), time_s=round(took, 1),
+            straight_s=round(float(np.linalg.norm(goal[:2] - start[:2])) / speed, 1),
+            shortest_s=navigate_score.finite(shortest / speed, 1),
+            driven_m=round(records.length - before, 3))
+
+    def tell_pose(self) -> tuple[float, float]:
+        """Publish an initial pose as from rviz, off by an error from the seed: that, m and rad."""
+        self.wait_for("localisation and drive", lambda: min(
+            self._told.get_num_connections(), self._commands.get_num_connections()))
+        off = np.random.default_rng([self.options.seed, 1]).uniform(-1, 1, 3) * TOLD_OFF
+        pose = self.watch.records.true_pose + off
+        on_map = compose(invert(self._map_in_world), pose)
+        self._told.publish(told_pose(on_map, self.watch.records.now))
+        return float(np.linalg.norm(off[:2])), float(abs(off[2]))
+
+    def turn_round(self, what: str) -> None:
+        """Turn once on the spot, timed by simulated time."""
+        command = Twist()
+        command.angular.z = TURN_RATE
+        self.look_for(2 * np.pi / TURN_RATE, what, command)
+        self._commands.publish(Twist())
+
+    def _goal(self, goal: np.ndarray) -> MoveBaseGoal:
+        on_map = compose(invert(self._map_in_world), goal)
+        message = MoveBaseGoal()
+        message.target_pose.header.frame_id = MAP
+        message.target_pose.header.stamp = rospy.Time.from_sec(self.watch.records.now)
+        message.target_pose.pose = pose_message(tuple(on_map.tolist()))
+        return message
+
+    def save_map(self) -> Path:
+        """Save the complete map by map_saver; returns its YAML file."""
+        self.look_for(LAST_MAP_LIMIT, "waiting for the last map")
+        made = place_for_map(self.options.out)
+        self._launched.run("map_saver", ["rosrun", "map_server", "map_saver", "-f",
+                                         str(made.with_suffix(""))], SAVE_LIMIT)
+        return made
+
+    def path(self) -> np.ndarray:
+        """Where the robot was (N, 2), m, in the world."""
+        return np.array(self.watch.records.truth).reshape(-1, 4)[:, 1:3]
 
     def end(self) -> None:
         """Ends this part's programs in reverse order of starting."""
@@ -229,82 +220,44 @@ class Part:
         self._children.clear()
 
 
-class MappingPart(Part):
-    """Mapping: move_base drives on the map that slam_gmapping is building."""
-
-    name = "mapping"
-
-    def run(self, result: navigate_score.Result) -> None:
-        """Drives to the waypoints and saves the map; `result` is filled even if this fails."""
-        self._start(SLAM, MOVE_BASE)
-        watch, house = self._watch, self._options.house
-        self._wait_for("the first map and the transform map to odom",
-                       lambda: watch.map is not None and watch.records.believed)
-        # The map frame's pose, as a user who clicks in rviz would see it.
-        result.map_in_world = compose(watch.records.true_pose, invert(watch.records.believed_pose))
-        driver = self._connect(result.map_in_world)
-        ways = []
-        self._begin()
-        points = np.array(house.way_points)
-        yaws = np.arctan2(*np.diff(points, axis=0, append=points[:1]).T[::-1])
-        try:
-            for number, (point, yaw) in enumerate(zip(points, yaws), start=1):
-                what = f"way-point {number}/{len(points)}"
-                ways.append(driver.drive_to(np.array([*point, yaw]), what))
-            made = self._save()
-        finally:
-            result.paths[self.name] = np.array(watch.records.truth).reshape(-1, 4)[:, 1:3]
-        result.map = read_map(made)[0]
-        result.mapping = navigate_score.score_mapping(
-            self._ground, result.map, watch.records, watch.beams, house.laser_reach, ways,
-            self._pace())
-        result.map_in_world = result.mapping.trajectory.alignment
-        keep_map(made, result.map_in_world)
-
-    def _save(self) -> Path:
-        """Save the complete map by map_saver; returns its YAML file."""
-        until = self._watch.records.now + LAST_MAP_LIMIT
-        while self._watch.records.now < until:
-            self._look("waiting for the last map")
-        made = place_for_map(self._options.out)
-        self._launched.run("map_saver", ["rosrun", "map_server", "map_saver", "-f",
-                                         str(made.with_suffix(""))], SAVE_LIMIT)
-        return made
+def map_house(part: Part, result: Result) -> None:
+    """move_base drives to the way-points on the map that slam_gmapping is building, which is then
+    saved; `result` is filled even if this fails."""
+    part.start(SLAM, MOVE_BASE)
+    watch, house = part.watch, part.options.house
+    # The map frame's pose, as a user who clicks in rviz would see it.
+    result.map_in_world = compose(watch.records.true_pose, invert(watch.records.believed_pose))
+    part.connect(result.map_in_world)
+    part.begin()
+    points = np.array(house.way_points)
+    yaws = np.arctan2(*np.diff(points, axis=0, append=points[:1]).T[::-1])
+    try:
+        ways = [part.drive_to(np.array([*point, yaw]), f"way-point {number}/{len(points)}")
+                for number, (point, yaw) in enumerate(zip(points, yaws), start=1)]
+        made = part.save_map()
+    finally:
+        result.paths[part.name] = part.path()
+    result.map, driven = read_map(made)[0], part.figures()
+    figures, result.map_in_world = navigate_score.mapping_figures(
+        part.ground, result.map, watch.records, watch.beams, house.laser_reach)
+    result.mapping = {**driven, **figures, "way_points": ways}
+    keep_map(made, result.map_in_world)
 
 
-class NavigationPart(Part):
-    """Goals: localisation on the saved map, from a slightly wrong initial pose."""
-
-    name = "goals"
-
-    def run(self, result: navigate_score.Result, map_file: str, goals: np.ndarray) -> None:
-        """Visits the goals (N, 3), in the world's frame; `result` is filled even if this fails."""
-        self._start((*NAVIGATION, f"map_file:={map_file}"))
-        watch = self._watch
-        self._wait_for("the map and the transform map to odom",
-                       lambda: watch.map is not None and watch.records.believed)
-        driver = self._connect(result.map_in_world)
-        self._wait_for("localisation and drive", lambda: driver.is_heard)
-        told = self._tell_pose(driver)
-        self._begin()
-        driver.turn_round("turning round to find itself")
-        since, ways = watch.records.now, []
-        try:
-            for number, goal in enumerate(goals, start=1):
-                ways.append(driver.drive_to(goal, f"goal {number}/{len(goals)}"))
-        finally:
-            records = watch.records
-            result.paths[self.name] = np.array(records.truth).reshape(-1, 4)[:, 1:3]
-            _, errors = records.errors(since, result.map_in_world)
-            result.navigation = navigate_score.Navigation(
-                **navigate_score.seen_of(records), ways=ways, pace=self._pace(),
-                localisation=navigate_score.localisation(told, errors))
-
-    def _tell_pose(self, driver: Driver) -> tuple[float, float]:
-        """Publishes an initial pose with an error drawn from the seed; returns it, m and rad."""
-        generator = np.random.default_rng([self._options.seed, 1])
-        off = generator.uniform(-1, 1, 3) * (TOLD_OFF, TOLD_OFF, TOLD_OFF_YAW)
-        true = self._watch.records.true_pose
-        told = np.array([*(true[:2] + off[:2]), wrap_angle(true[2] + off[2])])
-        driver.tell_pose(told)
-        return float(np.linalg.norm(relative(true, told)[:2])), float(abs(off[2]))
+def visit_goals(part: Part, result: Result, map_file: str, goals: np.ndarray) -> None:
+    """Visits the goals (N, 3), in the world's frame, localised on the saved map from a slightly
+    wrong initial pose; `result` is filled even if this fails."""
+    part.start((*NAVIGATION, f"map_file:={map_file}"))
+    part.connect(result.map_in_world)
+    told = part.tell_pose()
+    part.begin()
+    part.turn_round("turning round to find itself")
+    since, ways = part.watch.records.now, []
+    try:
+        for number, goal in enumerate(goals, start=1):
+            ways.append(part.drive_to(goal, f"goal {number}/{len(goals)}"))
+    finally:
+        result.paths[part.name] = part.path()
+        _, errors = part.watch.records.errors(since, result.map_in_world)
+        result.navigation = {**part.figures(), **navigate_score.localisation(told, errors),
+                             "goals": ways}

@@ -125,10 +125,11 @@ def map_picture(ground: Ground, result: Result, title: str, subtitle: str) -> np
     for part, text, colour in PATHS:
         axes.plot(*result.paths.get(part, np.empty((0, 2))).T, color=colour, linewidth=2,
                   label=text)
-    ways = result.navigation.ways if result.navigation else []
+    ways = result.navigation["goals"] if result.navigation else []
     for number, way in enumerate(ways, start=1):
-        ends = transform_points(np.array(way.goal), np.array([(0.0, 0.0), (0.4, 0.0)]))
-        axes.plot(*ends.T, color=GOAL if way.reached else CAR, linewidth=2, marker="o",
+        goal = np.array([way["x"], way["y"], np.radians(way["yaw_deg"])])
+        ends = transform_points(goal, np.array([(0.0, 0.0), (0.4, 0.0)]))
+        axes.plot(*ends.T, color=GOAL if way["reached"] else CAR, linewidth=2, marker="o",
                   markevery=[0], markersize=12, fillstyle="none")
         axes.annotate(str(number), ends[0], (10, 8), textcoords="offset points", color=TEXT)
     for colour, text in ((GOAL, "goal"), (CAR, "not reached")):

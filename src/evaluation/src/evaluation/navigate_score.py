@@ -1,19 +1,22 @@
-"""The figures of a run, whether they are within the limits, and its final table."""
+"""The figures of a run as report.json has them; violated limits; the final table.
+
+Lengths in m, times in simulated s except wall_s, angles in degrees; None: not finite.
+"""
 
 from __future__ import annotations
 
 import argparse
 import math
-from dataclasses import asdict, dataclass, field
-from typing import ClassVar
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field, fields
 
 import numpy as np
 from terminal_language import heading
 
-from evaluation.house import Contact, Records
+from evaluation.house import Records
 from evaluation.map_agreement import MapAgreement, map_agreement
-from evaluation.report import table
-from evaluation.trajectory_error import TrajectoryError, trajectory_error
+from evaluation.report import cell, table_of
+from evaluation.trajectory_error import trajectory_error
 from nav_algorithms.cells import FREE, UNKNOWN, OccupancyGrid
 from run_session.failure import RunError
 from trial_worlds.house import Ground, visible_walls
@@ -24,125 +27,16 @@ MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # m and degrees, mean error of localisation
 MOST_MISS, MOST_MISS_DEG = 0.2, 20.0  # m and degrees from a goal that is reported reached
 MOST_UNSEEN = 1.0  # s, simulated, between two contact checks, in which it may drive 26 cm
 POSE_STEP = 10  # every tenth pose is checked for what the laser saw from there
-
-
-@dataclass(frozen=True)
-class Way:
-    """A drive to a goal; m, s simulated, rad; true values unless noted otherwise."""
-
-    goal: tuple[float, float, float]  # in the world's frame
-    reached: bool  # as reported by move_base
-    text: str  # of move_base's result
-    time: float
-    driven: float
-    straight: float  # straight-line distance
-    shortest: float  # shortest collision-free path; inf: none
-    off: float  # distance from the goal at the end
-    off_yaw: float
-
-
-@dataclass(frozen=True)
-class Pace:
-    """How long a part of the run took, and what its processes used."""
-
-    simulated: float  # s
-    wall: float  # s
-    cpu: dict[str, float]  # percent of one core, by node; in s used in 100 simulated s
-
-    @property
-    def factor(self) -> float:
-        """Simulated over wall time."""
-        return self.simulated / self.wall if self.wall > 0 else 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Leg:
-    """The figures of one part of the run."""
-
-    name: ClassVar[str]  # in words
-    way: ClassVar[str]  # what one of its drives leads to
-
-    ways: list[Way]
-    contacts: list[Contact]
-    nearest: float  # m, smallest gap to anything
-    unseen: float  # s, simulated: longest time between two contact checks
-    driven: float  # m
-    pace: Pace
-
-    def common_faults(self) -> list[str]:
-        """Violated limits that both parts have, in words."""
-        found = []
-        for number, way in enumerate(self.ways, start=1):
-            name = f"{self.way} {number} ({way.goal[0]:.2f}, {way.goal[1]:.2f})"
-            off_deg = np.degrees(way.off_yaw)
-            if not way.reached:
-                found.append(f"{name} not reached: {way.text}")
-            elif way.off > MOST_MISS or off_deg > MOST_MISS_DEG:
-                found.append(f"{name} called reached, but {_cm(way.off)} and {off_deg:.0f}° off")
-        found += [f"{self.name}: {each.own} touched something at {each.begin:.1f} s, {each.place}"
-                  for each in self.contacts]
-        if self.unseen > MOST_UNSEEN:
-            found.append(f"{self.name}: nobody looked for {self.unseen:.1f} s whether it touches"
-                         f" something, more than {MOST_UNSEEN:g} s: this machine is too busy")
-        return found
-
-
-def seen_of(records: Records) -> dict:
-    """The fields of a part that come from its records."""
-    return dict(contacts=records.contacts, nearest=records.nearest[0],
-                unseen=float(records.longest_unseen), driven=records.length)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Mapping(Leg):
-    """The mapping part."""
-
-    name, way = "mapping", "way-point"
-
-    trajectory: TrajectoryError
-    agreement: MapAgreement
-    known: float  # m^2, free
-
-    @property
-    def faults(self) -> list[str]:
-        """Violated limits, in words."""
-        found = []
-        if self.trajectory.ate_rmse > MOST_ATE:
-            found.append(f"mapping: trajectory error {_cm(self.trajectory.ate_rmse)}, "
-                         f"more than {_cm(MOST_ATE)}")
-        for what, share in (("occupied cells near true walls", self.agreement.occupied_near_walls),
-                            ("seen walls on the map", self.agreement.walls_found)):
-            if share < LEAST_AGREEMENT:
-                found.append(f"mapping: {what} {share:.1%}, less than {LEAST_AGREEMENT:.0%}")
-        return found + self.common_faults()
-
-
-@dataclass(frozen=True)
-class Localisation:
-    """Errors of the estimated pose; m and rad."""
-
-    told: tuple[float, float] | None  # of the initial pose that was given
-    found: tuple[float, float]  # after the turn on the spot
-    mean: tuple[float, float]  # on the way to the goals
-    largest: tuple[float, float]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Navigation(Leg):
-    """The part with the goals."""
-
-    name, way = "on the way to the goals", "goal"
-
-    localisation: Localisation
-
-    @property
-    def faults(self) -> list[str]:
-        """Violated limits, in words."""
-        off, off_deg = self.localisation.mean[0], np.degrees(self.localisation.mean[1])
-        if off <= MOST_OFF and off_deg <= MOST_OFF_DEG:
-            return self.common_faults()
-        return [f"localisation: {_cm(off)} and {off_deg:.1f}° off in the mean, more than "
-                f"{_cm(MOST_OFF)} and {MOST_OFF_DEG:g}°", *self.common_faults()]
+WAYS = {"mapping": ("way_points", "mapping", "way-point"),
+        "goals": ("goals", "on the way to the goals", "goal")}  # key; part and goal in words
+COLUMNS = {
+    "goal": lambda way: str(way["number"]),
+    "x": lambda way: cell(way["x"], digits=2), "y": lambda way: cell(way["y"], digits=2),
+    "reached": lambda way: heading("yes") if way["reached"] else way["text"],
+    "s": lambda way: cell(way["time_s"]), "straight s": lambda way: cell(way["straight_s"]),
+    "shortest s": lambda way: f"{_known(way['shortest_s']):.1f}",
+    "m": lambda way: cell(way["driven_m"], digits=2),
+    "off cm": lambda way: cell(way["off_m"], 100), "off °": lambda way: cell(way["off_deg"])}
 
 
 @dataclass
@@ -151,21 +45,48 @@ class Result:
 
     map: OccupancyGrid | None = None
     map_in_world: np.ndarray = field(default_factory=lambda: np.zeros(3))
-    mapping: Mapping | None = None
-    navigation: Navigation | None = None
+    mapping: dict | None = None  # the figures of this part
+    navigation: dict | None = None
     paths: dict[str, np.ndarray] = field(default_factory=dict)  # (N, 2) m, by the run's part
+
+    @property
+    def parts(self) -> list[dict]:
+        """The figures of the parts that were run."""
+        return [part for part in (self.mapping, self.navigation) if part]
 
     @property
     def faults(self) -> list[str]:
         """Violated limits, in words."""
-        return [fault for part in (self.mapping, self.navigation) if part for fault in part.faults]
+        return ((_mapping_faults(self.mapping) if self.mapping else [])
+                + (_navigation_faults(self.navigation) if self.navigation else []))
 
 
-def score_mapping(ground: Ground, built: OccupancyGrid, records: Records, angles: np.ndarray,
-                  reach: float, ways: list[Way], pace: Pace) -> Mapping:
+def way(goal: Sequence[float], end: Sequence[float], reached: bool, text: str,
+        **figures: float | None) -> dict:
+    """A drive to a goal that ended there (x, y, yaw in the world); `text` of move_base's result."""
+    x, y, yaw = goal
+    off_yaw = math.remainder(end[2] - yaw, math.tau)
+    return {"x": round(x, 3), "y": round(y, 3), "yaw_deg": round(math.degrees(yaw), 1),
+            "reached": reached, "text": text, **figures,
+            "off_m": round(math.dist(end[:2], (x, y)), 3),
+            "off_deg": round(math.degrees(abs(off_yaw)), 1)}
+
+
+def seen_of(records: Records) -> dict:
+    """The figures of a part that come from its records."""
+    return {"distance_m": round(records.length, 3), "nearest_m": finite(records.nearest[0], 3),
+            "longest_unseen_s": round(float(records.longest_unseen), 2),
+            "contacts": [{"own": each.own, "begin_s": round(each.begin, 2),
+                          "end_s": round(each.end, 2), "place_m": each.place}
+                         for each in records.contacts]}
+
+
+def mapping_figures(ground: Ground, built: OccupancyGrid, records: Records, angles: np.ndarray,
+                    reach: float) -> tuple[dict, np.ndarray]:
     """Compare the map with the walls that a laser with these beams (rad) and reach (m) could see.
 
-    Raises RunError if there are no true and estimated poses of the same times.
+    Also the pose (3,) of the map in the world. Raises RunError if there are no true and estimated
+    poses of the same times.
     """
     _, believed, true = records.moments()
     if not len(true):
@@ -175,136 +96,123 @@ def score_mapping(ground: Ground, built: OccupancyGrid, records: Records, angles
     seen = visible_walls(ground.walls, true[::POSE_STEP], angles, reach)
     agreement = map_agreement(built, ground.walls, seen, trajectory.alignment)
     free = (built.cells >= FREE) & (built.cells < 50) & (built.cells != UNKNOWN)
-    return Mapping(**seen_of(records), ways=ways, pace=pace, trajectory=trajectory,
-                   agreement=agreement, known=float(free.sum() * built.resolution ** 2))
+    return {"ate_rmse_m": round(trajectory.ate_rmse, 4),
+            "yaw_rmse_deg": round(math.degrees(trajectory.yaw_rmse), 3),
+            "largest_m": round(trajectory.largest, 4), **asdict(agreement),
+            "known_m2": round(float(free.sum() * built.resolution ** 2), 1),
+            }, trajectory.alignment
 
 
-def localisation(told: tuple[float, float] | None, errors: np.ndarray) -> Localisation:
-    """From errors (N, 2) on the way to the goals; the first one follows the turn on the spot."""
+def localisation(told: Sequence[float] | None, errors: np.ndarray) -> dict:
+    """From errors (N, 2), m and rad, on the way to the goals: the first follows the turn on the
+    spot. `told`: that of the initial pose that was given."""
     if not len(errors):
         errors = np.full((1, 2), np.inf)
-    return Localisation(told, tuple(errors[0].tolist()), tuple(errors.mean(axis=0).tolist()),
-                        tuple(errors.max(axis=0).tolist()))
+    return {"told_off": _error(told) if told else None, "found_off": _error(errors[0]),
+            "mean_off": _error(errors.mean(axis=0)), "largest_off": _error(errors.max(axis=0))}
 
 
-def _cm(length: float) -> str:
-    return f"{length * 100:.1f} cm"
+def finite(value: float, digits: int) -> float | None:
+    """The rounded value; None of one that JSON does not have."""
+    return round(float(value), digits) if np.isfinite(value) else None
 
 
-COLUMNS = ("goal", "x", "y", "reached", "s", "straight s", "shortest s", "m", "off cm", "off °")
+def _error(error: Sequence[float]) -> dict:
+    return {"m": finite(error[0], 4), "deg": finite(math.degrees(error[1]), 2)}
+
+
+def _known(value: float | None) -> float:
+    return math.inf if value is None else value
+
+
+def _mapping_faults(mapping: dict) -> list[str]:
+    found = []
+    if mapping["ate_rmse_m"] > MOST_ATE:
+        found.append(f"mapping: trajectory error {_cm(mapping['ate_rmse_m'])}, "
+                     f"more than {_cm(MOST_ATE)}")
+    for what, share in (("occupied cells near true walls", mapping["occupied_near_walls"]),
+                        ("seen walls on the map", mapping["walls_found"])):
+        if share < LEAST_AGREEMENT:
+            found.append(f"mapping: {what} {share:.1%}, less than {LEAST_AGREEMENT:.0%}")
+    return found + _common_faults(mapping, *WAYS["mapping"])
+
+
+def _navigation_faults(navigation: dict) -> list[str]:
+    off, off_deg = map(_known, navigation["mean_off"].values())
+    found = [f"localisation: {_cm(off)} and {off_deg:.1f}° off in the mean, more than "
+             f"{_cm(MOST_OFF)} and {MOST_OFF_DEG:g}°"
+             ] if off > MOST_OFF or off_deg > MOST_OFF_DEG else []
+    return found + _common_faults(navigation, *WAYS["goals"])
+
+
+def _common_faults(part: dict, ways: str, name: str, goal: str) -> list[str]:
+    """Violated limits that both parts have, in words."""
+    found = []
+    for number, each in enumerate(part[ways], start=1):
+        there = f"{goal} {number} ({each['x']:.2f}, {each['y']:.2f})"
+        if not each["reached"]:
+            found.append(f"{there} not reached: {each['text']}")
+        elif each["off_m"] > MOST_MISS or each["off_deg"] > MOST_MISS_DEG:
+            found.append(f"{there} called reached, but {_cm(each['off_m'])} and"
+                         f" {each['off_deg']:.0f}° off")
+    found += [f"{name}: {each['own']} touched something at {each['begin_s']:.1f} s,"
+              f" {each['place_m']}" for each in part["contacts"]]
+    if (unseen := part["longest_unseen_s"]) > MOST_UNSEEN:
+        found.append(f"{name}: nobody looked for {unseen:.1f} s whether it touches"
+                     f" something, more than {MOST_UNSEEN:g} s: this machine is too busy")
+    return found
 
 
 def summarize(options: argparse.Namespace, outcome: tuple[str, str], result: Result) -> dict:
-    """All figures; lengths in m, times in simulated s except wall_s, angles in degrees."""
-    speed = options.house.max_speed
-    mapping, navigation = result.mapping, result.navigation
+    """All figures."""
     return {
         "outcome": outcome[0],
         "why": outcome[1] or None,
         "seed": options.seed,
         "wanted_real_time_factor": options.real_time_factor,
         "goals_wanted": options.goals,
-        "goals_reached": sum(way.reached for way in navigation.ways) if navigation else 0,
+        "goals_reached": reached(result),
         "limits": {"ate_m": MOST_ATE, "agreement": LEAST_AGREEMENT, "contacts": 0,
                    "localisation_m": MOST_OFF, "localisation_deg": MOST_OFF_DEG},
         "faults": result.faults,
         "map_in_world": [round(value, 4) for value in result.map_in_world.tolist()],
-        "mapping": _mapping(mapping, speed) if mapping else None,
-        "navigation": _navigation(navigation, speed) if navigation else None,
+        "mapping": result.mapping,
+        "navigation": result.navigation,
     }
 
 
-def lines(options: argparse.Namespace, result: Result) -> list[str]:
+def reached(result: Result) -> int:
+    """How many goals were reached."""
+    return sum(each["reached"] for each in (result.navigation or {"goals": []})["goals"])
+
+
+def lines(result: Result) -> list[str]:
     """The table of goals, and lines on map and localisation."""
     found = []
-    if result.mapping:
-        mapping = result.mapping
+    if mapping := result.mapping:
+        agreement = MapAgreement(**{each.name: mapping[each.name] for each in fields(MapAgreement)})
+        found += [f"map: {agreement}", "trajectory while mapping: ATE"
+                  f" {_cm(mapping['ate_rmse_m'])}, {_drove(mapping)}"]
+    if place := result.navigation:
+        rows = [{"number": number, **each} for number, each in enumerate(place["goals"], start=1)]
+        told = place["told_off"]
         found += [
-            f"map: {mapping.agreement}",
-            f"trajectory while mapping: ATE {mapping.trajectory.ate_rmse * 100:.1f} cm,"
-            f" {_drove(mapping)}",
-        ]
-    if result.navigation:
-        place = result.navigation.localisation
-        found += [
-            *_table(result.navigation.ways, options.house.max_speed),
-            f"localisation: {_both(place.mean)} off in the mean, {_both(place.largest)} at most"
-            + (f"; was told {_both(place.told)} off" if place.told else ""),
-            f"driven {_drove(result.navigation)}",
-        ]
+            *table_of(COLUMNS, rows, left=()).splitlines(),
+            f"localisation: {_both(place['mean_off'])} off in the mean,"
+            f" {_both(place['largest_off'])} at most"
+            + (f"; was told {_both(told)} off" if told else ""),
+            f"driven {_drove(place)}"]
     return found
 
 
-def _table(ways: list[Way], speed: float) -> list[str]:
-    rows = [COLUMNS]
-    for number, way in enumerate(ways, start=1):
-        rows.append((
-            str(number), f"{way.goal[0]:.2f}", f"{way.goal[1]:.2f}",
-            heading("yes") if way.reached else way.text, f"{way.time:.1f}",
-            f"{way.straight / speed:.1f}", f"{way.shortest / speed:.1f}", f"{way.driven:.2f}",
-            f"{way.off * 100:.1f}",
-            f"{math.degrees(way.off_yaw):.1f}"))
-    return table(rows, left=()).splitlines()
+def _drove(part: dict) -> str:
+    return (f"{part['distance_m']:.1f} m in {part['simulated_s']:.0f} s, touched"
+            f" {len(part['contacts'])}, smallest gap {_cm(_known(part['nearest_m']))}")
 
 
-def _mapping(mapping: Mapping, speed: float) -> dict:
-    trajectory = mapping.trajectory
-    return _leg(mapping, speed, "way_points", {
-        "ate_rmse_m": round(trajectory.ate_rmse, 4),
-        "yaw_rmse_deg": round(math.degrees(trajectory.yaw_rmse), 3),
-        "largest_m": round(trajectory.largest, 4),
-        **asdict(mapping.agreement),
-        "known_m2": round(mapping.known, 1),
-    })
+def _both(error: dict) -> str:
+    return f"{_cm(_known(error['m']))} and {_known(error['deg']):.1f}°"
 
 
-def _navigation(navigation: Navigation, speed: float) -> dict:
-    place = navigation.localisation
-    return _leg(navigation, speed, "goals", {
-        "told_off": _error(place.told) if place.told else None,
-        "found_off": _error(place.found),
-        "mean_off": _error(place.mean),
-        "largest_off": _error(place.largest),
-    })
-
-
-def _leg(leg: Leg, speed: float, ways: str, own: dict) -> dict:
-    pace = leg.pace
-    return {
-        "simulated_s": round(pace.simulated, 1), "wall_s": round(pace.wall, 1),
-        "real_time_factor": round(pace.factor, 3), "cpu_percent_of_a_core": pace.cpu,
-        "distance_m": round(leg.driven, 3),
-        **own,
-        "nearest_m": _finite(leg.nearest, 3), "longest_unseen_s": round(leg.unseen, 2),
-        "contacts": [{"own": each.own, "begin_s": round(each.begin, 2),
-                      "end_s": round(each.end, 2), "place_m": each.place}
-                     for each in leg.contacts],
-        ways: [_way(way, speed) for way in leg.ways],
-    }
-
-
-def _way(way: Way, speed: float) -> dict:
-    x, y, yaw = way.goal
-    return {"x": round(x, 3), "y": round(y, 3), "yaw_deg": round(math.degrees(yaw), 1),
-            "reached": way.reached, "text": way.text, "time_s": round(way.time, 1),
-            "straight_s": round(way.straight / speed, 1),
-            "shortest_s": _finite(way.shortest / speed, 1),
-            "driven_m": round(way.driven, 3), "off_m": round(way.off, 3),
-            "off_deg": round(math.degrees(way.off_yaw), 1)}
-
-
-def _error(error: tuple[float, float]) -> dict:
-    return {"m": _finite(error[0], 4), "deg": _finite(math.degrees(error[1]), 2)}
-
-
-def _finite(value: float, digits: int) -> float | None:
-    return round(value, digits) if np.isfinite(value) else None
-
-
-def _drove(leg: Leg) -> str:
-    return (f"{leg.driven:.1f} m in {leg.pace.simulated:.0f} s, touched {len(leg.contacts)},"
-            f" smallest gap {leg.nearest * 100:.1f} cm")
-
-
-def _both(error: tuple[float, float]) -> str:
-    return f"{error[0] * 100:.1f} cm and {math.degrees(error[1]):.1f}°"
+def _cm(length: float) -> str:
+    return f"{length * 100:.1f} cm"
