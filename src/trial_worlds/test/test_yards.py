@@ -21,12 +21,13 @@ from trial_worlds.crossing import (
     PERSON_RADIUS,
     ROBOT_FRONT,
     ROBOT_SPEED,
-    ROOM,
     clearance,
     draw_crossing,
 )
 from trial_worlds.house import open_walls
 from trial_worlds.yard import difficulty
+
+RESOURCES = Resources.from_environment(os.environ, find_package=RosPack().get_path)
 
 
 def cells(*rows: str) -> np.ndarray:
@@ -161,7 +162,9 @@ def test_a_person_comes_close_before_a_robot_that_drives_on(seed):
     air = min(clearance((x, 0.0, 0.0), place[None], PERSON_RADIUS)
               for x, place in zip(robot, person, strict=True))
     assert -0.15 < air < AHEAD[1]
-    for low, high, values in zip(*np.array(ROOM).T, person.T, strict=True):
+    walls = load_model(crossing.model("room"), RESOURCES).links[0].collisions
+    places = np.array([wall.pose.position[:2] for wall in walls])
+    for low, high, values in zip(places.min(0), places.max(0), person.T, strict=True):
         assert low + PERSON_RADIUS < values.min() and values.max() < high - PERSON_RADIUS
 
 
@@ -196,12 +199,11 @@ def touches(waffle_text: str, heading: float, air: float) -> bool:
     far = np.arange(0.1, 0.6, 0.0005)[:, None] * way
     left = np.array([clearance((0.0, 0.0, 0.0), place[None], radius) for place in far])
     x, y = far[np.abs(left - air).argmin()]
-    resources = Resources.from_environment(os.environ, find_package=RosPack().get_path)
     post = Collision("post", Cylinder(radius, 0.5))
     world = World()
     world.spawn(ModelDescription("post", static=True, links=(
         LinkDescription("post", Pose((x, y, 0.25)), collisions=(post,)),)))
-    world.spawn(load_model(waffle_text, resources), Pose(), "waffle")
+    world.spawn(load_model(waffle_text, RESOURCES), Pose(), "waffle")
     world.step(3)
     names = [(each.collision1, each.collision2) for each in world.contacts()]
     world.close()
@@ -212,6 +214,11 @@ def touches(waffle_text: str, heading: float, air: float) -> bool:
 def test_the_engine_says_the_same_of_what_touches(waffle_text, heading):
     assert touches(waffle_text, heading, -0.002)
     assert not touches(waffle_text, heading, 0.003)
+
+
+def test_a_person_in_the_simulator_is_as_wide_as_judged():
+    (body,) = load_model(crossing.model("person"), RESOURCES).links
+    assert body.collisions[0].geometry.radius == PERSON_RADIUS
 
 
 def test_an_empty_room_is_all_air():

@@ -257,8 +257,8 @@ def task_of(case: YardCase) -> Task:
         return Task(case, models, yard.start(case.repeat), yard.goal, yard.path_length,
                     yard.cylinders, drawn)
     walk, start, goal = crossing.draw_crossing(case.seed), crossing.START, crossing.GOAL
-    models = {"room": (crossing.room_model(), ORIGIN),
-              PERSON: (crossing.person_model(), walk.begin)}
+    models = {"room": (crossing.model("room"), ORIGIN),
+              PERSON: (crossing.model("person"), walk.begin)}
     return Task(case, models, start, goal, math.dist(start[:2], goal[:2]), np.empty((0, 2)),
                 asdict(walk), walk)
 

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+from rospkg import RosPack
 
 from trial_worlds.yard import RADIUS, Yard
 
@@ -35,9 +37,8 @@ def clearance(pose: tuple[float, float, float], centres: np.ndarray, radius: flo
     return float(np.min(gaps, initial=np.inf)) - radius
 
 
-PERSON_RADIUS, PERSON_HEIGHT = 0.25, 1.7  # m
+PERSON_RADIUS = 0.25  # m, as in person.sdf
 ROBOT_SPEED, ROBOT_FRONT = 0.26, 0.073    # m/s, m before base_footprint
-ROOM = ((-1.0, 6.0), (-3.5, 3.5))         # m, its walls in x and y
 START, GOAL = (0.0, 0.0, 0.0), (5.0, 0.0, 0.0)
 APPROACH = 2.6                  # m from the person's start to the robot's line
 SPEED = (1.0, 1.4)              # m/s
@@ -81,43 +82,24 @@ def draw_crossing(seed: int) -> Crossing:
                     random.uniform(*WHERE), random.uniform(-SLANT, SLANT), random.uniform(*AHEAD))
 
 
-HEIGHT, THICKNESS = 0.5, 0.1  # m, of cylinders and walls
+HEIGHT = 0.5  # m, of cylinders
 PERSON_TOPIC = "person/cmd_vel"
+
+
+def model(name: str) -> str:
+    """The SDF of models/NAME.sdf: a room, or a person whom commands on PERSON_TOPIC move."""
+    return (Path(RosPack().get_path("trial_worlds")) / "models" / f"{name}.sdf").read_text("utf-8")
 
 
 def yard_model(yard: Yard) -> str:
     """A static model of all the yard's cylinders."""
     shape = f"<cylinder><radius>{RADIUS:.5f}</radius><length>{HEIGHT}</length></cylinder>"
-    return _static("yard", [(f"{x:.5f} {y:.5f} {HEIGHT / 2} 0 0 0", shape)
-                            for x, y in yard.cylinders])
-
-
-def room_model() -> str:
-    """The four walls of the room in which a person crosses."""
-    (left, right), (low, high) = ROOM
-    middle_x, middle_y, height = (left + right) / 2, (low + high) / 2, HEIGHT / 2
-    along = f"<box><size>{right - left:g} {THICKNESS} {HEIGHT}</size></box>"
-    across = f"<box><size>{THICKNESS} {high - low:g} {HEIGHT}</size></box>"
-    return _static("yard", [(f"{middle_x:g} {low:g} {height} 0 0 0", along),
-                            (f"{middle_x:g} {high:g} {height} 0 0 0", along),
-                            (f"{left:g} {middle_y:g} {height} 0 0 0", across),
-                            (f"{right:g} {middle_y:g} {height} 0 0 0", across)])
-
-
-def person_model() -> str:
-    """A cylinder that is moved by commands on PERSON_TOPIC; it floats, so nothing slows it."""
-    shape = (f"<geometry><cylinder><radius>{PERSON_RADIUS}</radius>"
-             f"<length>{PERSON_HEIGHT}</length></cylinder></geometry>")
-    return (
-        '<sdf version="1.6"><model name="person"><link name="body">'
-        f"<pose>0 0 {PERSON_HEIGHT / 2 + 0.01} 0 0 0</pose><gravity>false</gravity>"
-        "<inertial><mass>70</mass><inertia><ixx>20</ixx><ixy>0</ixy><ixz>0</ixz><iyy>20</iyy>"
-        "<iyz>0</iyz><izz>2</izz></inertia></inertial>"
-        f'<collision name="body">{shape}</collision><visual name="body">{shape}</visual></link>'
-        '<plugin name="walk" filename="libgazebo_ros_planar_move.so">'
-        f"<commandTopic>{PERSON_TOPIC}</commandTopic><odometryRate>0</odometryRate>"
-        "</plugin></model></sdf>"
-    )
+    parts = "".join(
+        f'<{kind} name="{number}"><pose>{x:.5f} {y:.5f} {HEIGHT / 2} 0 0 0</pose>'
+        f"<geometry>{shape}</geometry></{kind}>\n"
+        for number, (x, y) in enumerate(yard.cylinders) for kind in ("collision", "visual"))
+    return ('<sdf version="1.6"><model name="yard"><static>true</static><link name="parts">\n'
+            f"{parts}</link></model></sdf>")
 
 
 def world(model: str) -> str:
@@ -128,12 +110,3 @@ def world(model: str) -> str:
             "<include><uri>model://sun</uri></include>\n"
             "<include><uri>model://ground_plane</uri></include>\n"
             f"{inner}\n</world></sdf>\n")
-
-
-def _static(name: str, shapes: list[tuple[str, str]]) -> str:
-    """A static model of shapes (pose, geometry)."""
-    parts = "".join(
-        f'<{kind} name="{number}"><pose>{pose}</pose><geometry>{shape}</geometry></{kind}>\n'
-        for number, (pose, shape) in enumerate(shapes) for kind in ("collision", "visual"))
-    return (f'<sdf version="1.6"><model name="{name}"><static>true</static><link name="parts">\n'
-            f"{parts}</link></model></sdf>")
