@@ -198,7 +198,7 @@ def test_a_mistake_on_the_command_line_is_one_line(arguments, said):
 def test_the_bench_takes_all_methods_and_the_pages_own_first():
     assert known_methods()[0] == "sliding_windows" and len(known_methods()) == 7
     trial = LaneComparison()
-    assert [each.method for each in trial.cases(trial.parse(["--seeds", "1"]))] == known_methods()
+    assert [each.driver for each in trial.cases(trial.parse(["--seeds", "1"]))] == known_methods()
 
 
 def with_people(seed, encounters):

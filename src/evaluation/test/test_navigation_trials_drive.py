@@ -8,6 +8,7 @@ import pytest
 
 from evaluation import yard_drive as driving
 from evaluation.navigation_trials import judged
+from evaluation.trial import Case
 from evaluation.yard_drive import (
     BY_PERSON,
     BY_ROBOT,
@@ -24,7 +25,7 @@ from run_session.processes import Family
 from trial_worlds.crossing import draw_crossing
 from trial_worlds.yard import RADIUS
 
-CROSSING = driving.YardCase("a person", CROSSINGS, 4, 0)
+CROSSING = Case("a person", CROSSINGS, 4)
 NOBODY = np.empty((0, 2))
 
 
@@ -104,7 +105,7 @@ def drive(rig, task):
 
 
 def test_a_drive_into_an_obstacle_is_a_contact():
-    found, way = drive(FakeRig(), driving.task_of(driving.YardCase("a", YARDS, 3, 0)))
+    found, way = drive(FakeRig(), driving.task_of(Case("a", YARDS, 3)))
     assert (found.outcome, found.why) == ("contact", OBSTACLE) and len(way) > 3
 
 

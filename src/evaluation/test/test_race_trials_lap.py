@@ -16,6 +16,7 @@ from evaluation import race_trials as trial_module
 from evaluation.course_run import CourseRun
 from evaluation.lap import RACE, Disturbance, draw
 from evaluation.race_trials import Lap, racetrack, random_track
+from evaluation.trial import Case
 from run_session.failure import RunError
 from run_session.session import Session
 
@@ -54,8 +55,7 @@ def test_the_start_is_beside_and_along_the_line():
 
 
 def test_the_course_run_of_a_lap_is_one_that_course_run_and_the_launch_file_know():
-    case = trial_module.RaceCase("a lap", trial_module.RACETRACK, 5,
-                                 follower="lane_follow.py")
+    case = Case("a lap", trial_module.RACETRACK, 5, "lane_follow.py")
     words = trial_module.RaceTrial().outing(Path("/o"), case).arguments(5, Path("/w.world"))
     found = CourseRun.parse(words)
     assert (found.fast, found.video, found.seed, found.camera) == (True, False, 5, None)
@@ -82,18 +82,18 @@ def stand_in(monkeypatch, code: int, report: dict | None = None, says: str = "")
     if report is not None:
         text += f"(out / 'report.json').write_text(json.dumps({report!r}));"
     script = f"{text} print({says!r}); sys.exit({code})"
-    start_drive = Session.start_drive
+    run_drive = Session.drive
 
-    def start(session, command, folder, environment):
+    def run(session, command, folder, *rest):
         out = command[command.index("--out"):]
-        return start_drive(session, [sys.executable, "-c", script, *out], folder, environment)
+        return run_drive(session, [sys.executable, "-c", script, *out], folder, *rest)
 
-    monkeypatch.setattr(Session, "start_drive", start)
+    monkeypatch.setattr(Session, "drive", run)
 
 
 def drive(out: Path, follower: str = "lane_follow.py") -> Lap:
     """One lap on the racetrack, of seed 4."""
-    case = trial_module.RaceCase(f"{follower} racetrack 4", "racetrack", 4, follower=follower)
+    case = Case(f"{follower} racetrack 4", "racetrack", 4, follower)
     with Session(out) as session:
         trial = trial_module.RaceTrial()
         return trial.judge(trial.drive(session, case))

@@ -37,21 +37,24 @@ def wait_for(path, text):
 
 @pytest.fixture
 def type_ctrl_c():
-    """A moment from now; it counts also where the tests run in a shell's background."""
+    """Once that log says so; it counts also where the tests run in a shell's background."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
-    yield timer.start
+
+    def type_later(log, text):
+        wait_for(log, text)
+        time.sleep(0.2)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    yield lambda *said: threading.Thread(target=type_later, args=said).start()
     signal.signal(signal.SIGINT, before)
 
 
 @pytest.fixture
 def drive(tmp_path, monkeypatch):
-    """A session and a drive in it that goes on until it is told to end."""
+    """A session, and the command of a drive that goes on until it is told to end."""
     monkeypatch.chdir(tmp_path)
     with Session(tmp_path) as session:
-        started = session.start_drive(["python3", "-c", DRIVE], tmp_path)
-        wait_for(tmp_path / "drive.log", "drives")
-        yield session, started
+        yield session, ["python3", "-c", DRIVE]
 
 
 def test_a_run_in_a_network_of_its_own_takes_no_name_for_an_address(tmp_path):
@@ -62,18 +65,18 @@ def test_a_run_in_a_network_of_its_own_takes_no_name_for_an_address(tmp_path):
 
 
 def test_a_drive_that_takes_too_long_ends_and_leaves_no_report(drive, tmp_path):
-    _, started = drive
-    with pytest.raises(RunError, match="a lap: the drive did not end within 0 s"):
-        started.report(0.2, "a lap")
+    session, command = drive
+    with pytest.raises(RunError, match="a lap: the drive did not end within 4 s"):
+        session.drive(command, tmp_path, "a lap", 4.0)
     assert not psutil.pid_exists(int((tmp_path / "drive.log").read_text().split()[1]))
     assert not (tmp_path / "report.json").exists()
 
 
 def test_an_interrupted_drive_leaves_no_report(drive, tmp_path, type_ctrl_c):
-    session, started = drive
+    session, command = drive
     with pytest.raises(KeyboardInterrupt):
-        type_ctrl_c()
-        started.report(60.0, "a lap")
+        type_ctrl_c(tmp_path / "drive.log", "drives")
+        session.drive(command, tmp_path, "a lap", 60.0)
     session.family.stop()
     assert not (tmp_path / "report.json").exists()
 
@@ -81,7 +84,7 @@ def test_an_interrupted_drive_leaves_no_report(drive, tmp_path, type_ctrl_c):
 def test_a_drive_that_broke_off_leaves_no_report(tmp_path):
     breaks = f"open('{tmp_path}/report.json', 'w').write('{{}}'); raise SystemExit(2)"
     with Session(tmp_path) as session, pytest.raises(RunError, match="a lap: exit code 2"):
-        session.start_drive(["python3", "-c", breaks], tmp_path).report(60.0, "a lap")
+        session.drive(["python3", "-c", breaks], tmp_path, "a lap", 60.0)
     assert not (tmp_path / "report.json").exists()
 
 
@@ -89,7 +92,7 @@ def test_a_drive_that_could_not_say_why_for_a_full_disk_names_that(tmp_path, mon
     full = SimpleNamespace(f_blocks=9, f_bavail=0, f_frsize=4096, f_files=0, f_favail=0)
     monkeypatch.setattr(os, "statvfs", lambda _folder: full)
     with Session(tmp_path) as session, pytest.raises(OSError, match=str(tmp_path)) as said:
-        session.start_drive(["python3", "-c", "raise SystemExit(120)"], tmp_path).report(60.0, "a")
+        session.drive(["python3", "-c", "raise SystemExit(120)"], tmp_path, "a", 60.0)
     assert said.value.errno == errno.ENOSPC
 
 
@@ -98,7 +101,7 @@ def test_a_ctrl_c_while_processes_end_leaves_none(tmp_path, type_ctrl_c):
     child = session.family.start("stubborn", STUBBORN, os.environ, tmp_path / "log")
     wait_for(tmp_path / "log", "started")
     with pytest.raises(KeyboardInterrupt), session:
-        type_ctrl_c()
+        type_ctrl_c(tmp_path / "log", "started")
     assert child.process.poll() is not None
 
 

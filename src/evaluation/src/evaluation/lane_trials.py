@@ -114,16 +114,9 @@ NEAR = 3.0  # m: people set off once the car is this close, so that they meet
 LONGEST_LAP = 240.0  # s, simulated
 
 
-@dataclass(frozen=True, kw_only=True)
-class LaneCase(Case):
-    """A drive by a method."""
-
-    method: str
-
-
-def lane_case(method: str, seed: int, kind: str = LAPS) -> LaneCase:
+def lane_case(method: str, seed: int, kind: str = LAPS) -> Case:
     """The case of one lap without people, or of several with people."""
-    return LaneCase(f"{method} {kind}-{seed}", kind, seed, method=method)
+    return Case(f"{method} {kind}-{seed}", kind, seed, method)
 
 
 class LaneDrives(LapTrial):
@@ -131,10 +124,10 @@ class LaneDrives(LapTrial):
 
     result = LaneDrive
 
-    def outing(self, out: Path, case: LaneCase) -> Outing:
+    def outing(self, out: Path, case: Case) -> Outing:
         """With people, poses.txt is written beside the report."""
         lit = out / "drives" / case.name.partition(" ")[2]
-        folder = lit / case.method
+        folder = lit / case.driver
         people = case.set == PEOPLE
         package, course = find_package("lane_keeping"), "lane" if people else "lane_empty"
         venue = Venue(package / "worlds" / f"{course}.world", load_course(course).track_path(),
@@ -143,14 +136,14 @@ class LaneDrives(LapTrial):
         if people:
             options = ("--launch", "evaluation", "lane.launch")
             record = (f"near:={NEAR:g}", f"record:={folder / 'poses.txt'}")
-        return Outing(f"{case.method}, seed {case.seed}", course, f"{case.method}.py", venue, lit,
+        return Outing(f"{case.driver}, seed {case.seed}", course, f"{case.driver}.py", venue, lit,
                       folder, draw(case.seed, BOUNDS), LONGEST_LAP,
                       LAPS_WITH_PEOPLE if people else 1, options, record)
 
     def judge(self, record: LapRecord) -> LaneDrive:
         case, outing = record.case, record.outing
         people = case.set == PEOPLE
-        found = from_report(record.report, case.method, case.seed, outing.disturbance, people)
+        found = from_report(record.report, case.driver, case.seed, outing.disturbance, people)
         if not people:
             return found
         recording = lane_encounters.read_recording(outing.out / "poses.txt")
@@ -187,13 +180,13 @@ class LaneTrial(LaneDrives):
         if not options.seeds and not options.crossings:
             raise RunError("--seeds 0 --crossings 0: nothing to drive")
 
-    def cases(self, options: argparse.Namespace) -> list[LaneCase]:
+    def cases(self, options: argparse.Namespace) -> list[Case]:
         """Includes at most as many drives with people as encounters are wanted."""
         return [*(lane_case(options.method, seed) for seed in range(options.seeds)),
                 *(lane_case(options.method, PEOPLE_FROM + number, PEOPLE)
                   for number in range(options.crossings))]
 
-    def is_needed(self, case: LaneCase, results: Sequence[LaneDrive]) -> bool:
+    def is_needed(self, case: Case, results: Sequence[LaneDrive]) -> bool:
         return case.set == LAPS or count_met(results) < self.options.crossings
 
     def passed(self, results: Sequence[LaneDrive]) -> bool:
@@ -253,7 +246,7 @@ class LaneComparison(LaneDrives):
         if not options.seeds:
             raise RunError("--seeds 0: nothing to drive")
 
-    def cases(self, options: argparse.Namespace) -> list[LaneCase]:
+    def cases(self, options: argparse.Namespace) -> list[Case]:
         return [lane_case(method, seed)
                 for seed in range(options.seeds) for method in options.methods]
 

@@ -8,13 +8,13 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from racecar_description.track.closed_line import load_track
 
 from evaluation.lap import Disturbance
 from evaluation.report import cell, mean
-from evaluation.trial import Trial
+from evaluation.trial import Case, Trial
 from run_session.files import find_package
 from run_session.session import Session
 from trial_worlds.light import write_lit_world
@@ -95,7 +95,7 @@ class LapDrive:
 class LapRecord:
     """One drive as it was asked for, and course_run's report of it."""
 
-    case: Any
+    case: Case
     outing: Outing
     report: dict
 
@@ -107,20 +107,19 @@ class LapTrial(Trial):
     derived = ("within_limits",)
 
     @abstractmethod
-    def outing(self, out: Path, case: Any) -> Outing:
+    def outing(self, out: Path, case: Case) -> Outing:
         """The case's drive; folders lie below `out`."""
 
-    def drive(self, session: Session, case: Any) -> LapRecord:
+    def drive(self, session: Session, case: Case) -> LapRecord:
         outing = self.outing(session.out, case)
         models = outing.venue.models
         world = write_lit_world(outing.venue.world, models, outing.disturbance.light, outing.lit)
         script = find_package("evaluation") / "scripts" / "course_run.py"
         folders = filter(None, (outing.lit / "models", models, os.environ.get(MODEL_PATH)))
-        process = session.start_drive(
+        return LapRecord(case, outing, session.drive(
             [sys.executable, "-P", str(script), *outing.arguments(case.seed, world),
-             "--out", str(outing.out)],
-            outing.out, {**os.environ, MODEL_PATH: ":".join(map(str, folders))})
-        return LapRecord(case, outing, process.report(LAP_LIMIT * outing.laps, outing.what))
+             "--out", str(outing.out)], outing.out, outing.what, LAP_LIMIT * outing.laps,
+            {**os.environ, MODEL_PATH: ":".join(map(str, folders))}))
 
     def values(self, results: Sequence[LapDrive], **more: object) -> dict:
         """All results, with the limits by which they are judged."""

@@ -192,7 +192,7 @@ def lines(result: Result) -> list[str]:
     if mapping := result.mapping:
         agreement = MapAgreement(**{each.name: mapping[each.name] for each in fields(MapAgreement)})
         found += [f"map: {agreement}", "trajectory while mapping: ATE"
-                  f" {_cm(mapping['ate_rmse_m'])}, {_drove(mapping)}"]
+                  f" {mapping['ate_rmse_m'] * 100:.1f} cm, {_drove(mapping)}"]
     if place := result.navigation:
         rows = [{"number": number, **each} for number, each in enumerate(place["goals"], start=1)]
         told = place["told_off"]
@@ -207,11 +207,11 @@ def lines(result: Result) -> list[str]:
 
 def _drove(part: dict) -> str:
     return (f"{part['distance_m']:.1f} m in {part['simulated_s']:.0f} s, touched"
-            f" {len(part['contacts'])}, smallest gap {_cm(_known(part['nearest_m']))}")
+            f" {len(part['contacts'])}, smallest gap {_known(part['nearest_m']) * 100:.1f} cm")
 
 
 def _both(error: dict) -> str:
-    return f"{_cm(_known(error['m']))} and {_known(error['deg']):.1f}°"
+    return f"{_known(error['m']) * 100:.1f} cm and {_known(error['deg']):.1f}°"
 
 
 def _cm(length: float) -> str:

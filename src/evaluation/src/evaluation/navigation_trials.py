@@ -16,8 +16,8 @@ from evaluation import yard_drive
 from evaluation.command_line import Parser
 from evaluation.picture import CAR, FAINT, GOOD, chart, lap_colour, write_tiles
 from evaluation.report import cell, grouped, mean, table_of
-from evaluation.trial import Trial
-from evaluation.yard_drive import CROSSINGS, YARDS, NavigationStack, Record, YardCase
+from evaluation.trial import Case, Trial
+from evaluation.yard_drive import CROSSINGS, YARDS, NavigationStack, Record
 from run_session.failure import RunError
 from run_session.files import find_package
 from run_session.session import Session
@@ -270,14 +270,14 @@ class YardTrial(Trial):
         if not options.parameters.is_file():
             raise RunError(f"--parameters {options.parameters}: no such file")
 
-    def cases(self, options: argparse.Namespace) -> list[YardCase]:
+    def cases(self, options: argparse.Namespace) -> list[Case]:
         yards = range(options.first_yard, options.first_yard + options.yards)
         crossings = range(options.first_crossing, options.first_crossing + options.crossings)
         trials = [(YARDS, seed, repeat) for repeat in range(options.repeats) for seed in yards]
         trials += [(CROSSINGS, seed, 0) for seed in crossings]
-        return [YardCase("-".join(map(str, each)), *each) for each in trials]
+        return [Case("-".join(map(str, each)), *each[:2], repeat=each[2]) for each in trials]
 
-    def drive(self, session: Session, case: YardCase) -> Record:
+    def drive(self, session: Session, case: Case) -> Record:
         """What happened; the path is written below drives/."""
         options, task = self.options, yard_drive.task_of(case)
         stack = session.once(lambda: NavigationStack(

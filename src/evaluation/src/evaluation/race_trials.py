@@ -130,13 +130,6 @@ FOLLOWERS = ("lane_follow.py", "lane_follow_p.py")
 LONGEST_LAP = 120.0  # s, simulated
 
 
-@dataclass(frozen=True, kw_only=True)
-class RaceCase(Case):
-    """One lap of one follower."""
-
-    follower: str
-
-
 class RaceTrial(LapTrial):
     """Laps on the racetrack and on random tracks; the first follower must be within the limits."""
 
@@ -160,21 +153,21 @@ class RaceTrial(LapTrial):
         if not options.seeds and not options.tracks:
             raise RunError("--seeds 0 --tracks 0: nothing to drive")
 
-    def cases(self, options: argparse.Namespace) -> list[RaceCase]:
+    def cases(self, options: argparse.Namespace) -> list[Case]:
         """The followers alternate."""
         followers = tuple(dict.fromkeys(options.followers))
-        return [RaceCase(f"{follower} {kind} {seed}", kind, seed, follower=follower)
+        return [Case(f"{follower} {kind} {seed}", kind, seed, follower)
                 for kind, first, count in ((RACETRACK, options.first_seed, options.seeds),
                                            (RANDOM_TRACKS, options.first_track, options.tracks))
                 for seed, follower in itertools.product(range(first, first + count), followers)]
 
-    def outing(self, out: Path, case: RaceCase) -> Outing:
+    def outing(self, out: Path, case: Case) -> Outing:
         venue = (racetrack() if case.set == RACETRACK else
                  random_track(case.seed, out / "tracks"))
         name = venue.world.stem
         folder = out / "laps" / f"{name}-{case.seed}"
-        return Outing(f"{case.follower} on {name}, seed {case.seed}", "race", case.follower, venue,
-                      folder, folder / Path(case.follower).stem, draw(case.seed, RACE), LONGEST_LAP)
+        return Outing(f"{case.driver} on {name}, seed {case.seed}", "race", case.driver, venue,
+                      folder, folder / Path(case.driver).stem, draw(case.seed, RACE), LONGEST_LAP)
 
     def judge(self, record: LapRecord) -> Lap:
         case, outing, report = record.case, record.outing, record.report

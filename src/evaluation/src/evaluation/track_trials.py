@@ -110,11 +110,10 @@ class TrackTrial(Trial):
         """The case, and the drive's report."""
         kind = SETS[case.set]
         folder = session.out / case.name
-        process = session.start_drive([
+        return case, session.drive([
             sys.executable, "-P", str(find_package("evaluation") / "scripts" / "track.py"),
             "--scene", kind.scene, "--seed", str(case.seed), "--tracker", kind.tracker, "--fast",
-            "--no-video", "--out", str(folder)], folder)
-        return case, process.report(LIMIT, f"{case.set}, seed {case.seed}")
+            "--no-video", "--out", str(folder)], folder, f"{case.set}, seed {case.seed}", LIMIT)
 
     def judge(self, record: tuple[Case, dict]) -> DriveResult:
         case, report = record

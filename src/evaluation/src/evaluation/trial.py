@@ -31,6 +31,8 @@ class Case:
     name: str  # unique among the cases; also that of its result
     set: str = ""  # those of a set are summed up together
     seed: int = 0
+    driver: str = ""  # the program that drives, where trials differ in that
+    repeat: int = 0  # number among the cases that are alike but for this
 
 
 class Trial(ABC):

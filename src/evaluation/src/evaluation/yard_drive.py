@@ -215,17 +215,10 @@ YARDS, CROSSINGS = "yards", "crossings"  # the two sets of drives
 
 
 @dataclass(frozen=True)
-class YardCase(Case):
-    """One drive."""
-
-    repeat: int = 0
-
-
-@dataclass(frozen=True)
 class Task:
     """The task of a drive; m, rad."""
 
-    case: YardCase
+    case: Case
     models: dict[str, tuple[str, Place]]  # SDF and pose, by name
     start: Place
     goal: Place
@@ -247,7 +240,7 @@ class Record:
     real_time_factor: float
 
 
-def task_of(case: YardCase) -> Task:
+def task_of(case: Case) -> Task:
     """The task: through a yard, or through a room that a person walks across."""
     if case.set == YARDS:
         yard = draw_yard(case.seed)

@@ -147,7 +147,7 @@ class MarkingTrial(Trial):
         limit = limits.start_s + limits.wall_s + 3 * STARTUP_LIMIT
         for _ in range(TRIES):
             try:
-                return session.start_drive(command, folder, environment).report(limit, case.name)
+                return session.drive(command, folder, case.name, limit, environment)
             except RunError as error:
                 failure = str(error)
         return {"outcome": NOT_RUN, "violations": [], "fault": failure}

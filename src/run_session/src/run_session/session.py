@@ -22,7 +22,7 @@ from terminal_language.cells import cut
 from run_session.failure import RunError
 from run_session.files import check_space
 from run_session.launch import Launched
-from run_session.processes import Child, Family
+from run_session.processes import Family
 
 PLAIN_PERIOD = 10.0  # s, simulated
 TERMINAL_PERIOD = 0.2  # s, wall
@@ -161,41 +161,32 @@ class Session:
         """
         return Launched(self.family, self.out / "log", driver, vehicle, alone, environment or {})
 
-    def start_drive(self, command: list[str], folder: Path,
-                    environment: Mapping[str, str] | None = None) -> DriveProcess:
-        """Start a program that makes a drive and writes its report.json into this folder."""
-        return DriveProcess(self.family, command, folder, environment or os.environ)
+    def drive(self, command: list[str], folder: Path, what: str, limit: float,
+              environment: Mapping[str, str] | None = None) -> dict:
+        """Run a program that drives to its end; returns the report.json that it wrote there.
 
-
-class DriveProcess:
-    """A drive in a process of its own, known only by what it writes."""
-
-    def __init__(self, family: Family, command: list[str], folder: Path,
-                 environment: Mapping[str, str]):
-        self._family, self._report = family, folder / "report.json"
-        folder.mkdir(parents=True, exist_ok=True)
-        self._report.unlink(missing_ok=True)
-        self._child: Child = family.start("drive", command, environment, folder / "drive.log")
-
-    def report(self, limit: float, what: str) -> dict:
-        """Its report.json; RunError if it does not end within `limit`, s, wall, or did not drive,
-        OSError if that was because the disk is full.
-
-        An interrupted drive leaves no process and no report, so that --resume repeats it.
+        RunError if it does not end within `limit`, s, wall, or did not drive, OSError if that was
+        because the disk is full. An interrupted drive leaves no process and no report, so that
+        --resume repeats it.
         """
+        report = folder / "report.json"
+        folder.mkdir(parents=True, exist_ok=True)
+        report.unlink(missing_ok=True)
+        child = self.family.start("drive", command, environment or os.environ,
+                                  folder / "drive.log")
         try:
-            self._child.process.wait(limit)
+            child.process.wait(limit)
         except BaseException as early:
-            self._family.end(self._child)  # it still writes a report
-            self._report.unlink(missing_ok=True)
+            self.family.end(child)  # it still writes a report
+            report.unlink(missing_ok=True)
             if isinstance(early, subprocess.TimeoutExpired):
                 late = f"{what}: the drive did not end within {limit:.0f} s"
-                raise RunError(late, self._child.last_lines()) from early
+                raise RunError(late, child.last_lines()) from early
             raise
-        code = self._child.process.returncode
-        if code not in DRIVEN or not self._report.exists():
-            self._report.unlink(missing_ok=True)
-            check_space(self._report.parent)
-            *details, why = self._child.last_lines().splitlines() or [f"exit code {code}"]
+        code = child.process.returncode
+        if code not in DRIVEN or not report.exists():
+            report.unlink(missing_ok=True)
+            check_space(folder)
+            *details, why = child.last_lines().splitlines() or [f"exit code {code}"]
             raise RunError(f"{what}: {why}", "\n".join(details))
-        return json.loads(self._report.read_text(encoding="utf-8"))
+        return json.loads(report.read_text(encoding="utf-8"))

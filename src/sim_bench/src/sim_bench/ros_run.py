@@ -106,7 +106,7 @@ def marked_lap(settings: Settings, name: str, *options: str) -> dict:
     short = ("--duration", str(QUICK_LAP)) if settings.quick else ()
     command = [sys.executable, "-P", script, "--out", str(folder / "course"), *short, *options]
     with Session(folder) as session:
-        return session.start_drive(command, folder / "course").report(LAP_LIMIT, "a lap")
+        return session.drive(command, folder / "course", "a lap", LAP_LIMIT)
 
 
 def probe_command(kind: str, *arguments: str) -> list[str]:
