@@ -3,7 +3,6 @@
 import socket
 
 import pytest
-import rosgraph
 from workspace_needs.check.parameter_commands import output_of
 
 from bullet_sim_ros import launch_guard, only_simulator
@@ -22,10 +21,10 @@ def refusing(monkeypatch):
         return ("%s runs", name) if name == "/gazebo" else ()
 
     monkeypatch.setattr(only_simulator, "refusal", refusal)
+    monkeypatch.setattr(launch_guard, "publishes", lambda _uri, topic: topic == "/clock")
     with socket.create_server(("127.0.0.1", 0)) as listening:
         uri = f"http://127.0.0.1:{listening.getsockname()[1]}"
         monkeypatch.setenv("ROS_MASTER_URI", uri)
-        monkeypatch.setattr(rosgraph, "get_master_uri", lambda: uri)
         yield asked
 
 
@@ -70,11 +69,23 @@ def test_other_programs_choose_their_master_later(refusing):
     assert launch_guard.refusal_of(command) == "" and not refusing
 
 
-def test_a_port_of_its_own_counts(refusing, monkeypatch):
+@pytest.mark.parametrize("words", [["-p", "11399"], ["-p11399"], ["--port=11399"]])
+def test_a_port_of_its_own_counts(refusing, monkeypatch, words):
     uris = []
+    monkeypatch.setattr(launch_guard, "is_online", lambda uri: uri == "http://localhost:11399")
     monkeypatch.setattr(only_simulator, "refusal", lambda uri, _name: uris.append(uri) or ())
-    launch_guard.refusal_of([*ROSLAUNCH, "-p", "11399", "gazebo_ros", "empty_world.launch"])
+    launch_guard.refusal_of([*ROSLAUNCH, *words, "gazebo_ros", "empty_world.launch"])
     assert uris == ["http://localhost:11399"]
+
+
+@pytest.mark.parametrize("online, clock", [(False, True), (True, False)])
+def test_without_a_simulator_at_the_master_no_file_is_read(refusing, monkeypatch, online, clock):
+    monkeypatch.setattr(launch_guard, "is_online", lambda _uri: online)
+    monkeypatch.setattr(launch_guard, "publishes", lambda _uri, _topic: clock)
+    monkeypatch.setattr(launch_guard, "simulators_of", lambda *_: pytest.fail("read"))
+    for words in ([], ["-p", "11399"]):
+        command = [*ROSLAUNCH, *words, "gazebo_ros", "empty_world.launch"]
+        assert launch_guard.refusal_of(command) == ""
 
 
 def test_the_value_is_printed_without_a_newline(monkeypatch, capfd):

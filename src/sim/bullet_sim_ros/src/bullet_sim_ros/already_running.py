@@ -51,6 +51,17 @@ def is_online(master_uri: str) -> bool:
     return True
 
 
+def publishes(master_uri: str, topic: str) -> bool:
+    """Whether a node is registered there as the topic's publisher; False without a master."""
+    master = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport(ANSWER_TIME))
+    try:
+        _, _, (publishers, _, _) = master.getSystemState("/roslaunch")
+    except (OSError, http.client.HTTPException, xmlrpc.client.Error, ExpatError, TypeError,
+            ValueError):
+        return False
+    return any(name == topic for name, _ in publishers)
+
+
 def sign_of_life(master_uri: str, name: str) -> Sign:
     """Ask the node of this full name itself; OSError if there is no master."""
     master = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport(ANSWER_TIME))

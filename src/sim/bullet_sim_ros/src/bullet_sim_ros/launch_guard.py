@@ -8,11 +8,14 @@ this program print the value of a parameter: if it fails, roslaunch ends with ex
 import contextlib
 import io
 import os
+import re
 import sys
 from pathlib import Path
 
-from bullet_sim_ros.already_running import is_online
+from bullet_sim_ros import names
+from bullet_sim_ros.already_running import is_online, publishes
 
+_OWN_PORT = re.compile(r"(?:^| )(?:-p|--port)[ =]?(\d+)")  # of roslaunch's master
 SERVERS = ("gzserver", "gazebo", "debug", "perf")  # of gazebo_ros
 
 
@@ -34,11 +37,13 @@ def refusal_of(command: list[str]) -> str:
     """
     words = next((command[at + 1:] for at, word in enumerate(command[:2])
                   if Path(word).name == "roslaunch"), None)
-    own_port = any(word.startswith(("-p", "--port")) for word in words or ())
-    if words is None or not (own_port or is_online(os.environ.get("ROS_MASTER_URI", ""))):
+    if words is None:
+        return ""
+    own_port = _OWN_PORT.search(" ".join(words))
+    uri = f"http://localhost:{own_port[1]}" if own_port else os.environ.get("ROS_MASTER_URI", "")
+    if not (is_online(uri) and publishes(uri, names.CLOCK)):  # as each simulator does
         return ""
     # Only now, as these take half a second to load.
-    import rosgraph
     import roslaunch
     from roslaunch.core import RLException
     from rospkg import ResourceNotFound
@@ -49,8 +54,6 @@ def refusal_of(command: list[str]) -> str:
     if any((options.node_args, options.node_list, options.find_node, options.dump_params,
             options.file_list, options.ros_args)) or "-" in files:
         return ""
-    port = options.port
-    uri = f"http://localhost:{port}" if port else rosgraph.get_master_uri()
     try:
         refused = [refusal(uri, name) for name in simulators_of(files, command)]
     except (OSError, RLException, ResourceNotFound, ValueError):
