@@ -67,9 +67,10 @@ def test_triggers_that_come_while_the_loop_waits_cost_no_time(rate_hz):
     def run_pending(wait=0.0):
         """Comes back at a trigger."""
         after = 1 / rate_hz - wall.now % (1 / rate_hz) + 1e-6
+        wall.now += min(wait, after)
         if after < wait:
             triggered.append(wall.now)
-        wall.now += min(wait, after)
+        return after < wait
 
     simulation.mailbox = SimpleNamespace(run_pending=run_pending)
     simulation.scheduler.add(100.0, lambda: None)

@@ -129,7 +129,7 @@ def test_a_fault_is_said_once_after_a_while_and_again_only_much_later():
 def test_a_master_that_ends_within_an_answer_does_not_end_the_watch(monkeypatch):
     at_shutdown, looks = [], []
 
-    def look(_master):
+    def look(_master, _last):
         looks.append(len(looks))
         if len(looks) > 1:
             at_shutdown[0]()
@@ -140,3 +140,14 @@ def test_a_master_that_ends_within_an_answer_does_not_end_the_watch(monkeypatch)
     monkeypatch.setattr(topic_faults, "_graph", look)
     topic_faults._watch(Senders())
     assert looks == [0, 1]
+
+
+def test_types_are_asked_for_when_the_graph_has_changed():
+    asked, state = [], [[["/cmd_vel", ["/a"]]], [], []]
+    master = SimpleNamespace(getSystemState=lambda: state,
+                             getTopicTypes=lambda: asked.append(1) or [["/cmd_vel", TWIST]])
+    first = topic_faults._graph(master, Graph({}, {}, {}))
+    assert topic_faults._graph(master, first) is first and len(asked) == 1
+    assert first == Graph({"/cmd_vel": ["/a"]}, {}, {"/cmd_vel": TWIST})
+    state[1] = [["/cmd_vel", [ME]]]
+    assert topic_faults._graph(master, first).subscribers == {"/cmd_vel": [ME]} and len(asked) == 2

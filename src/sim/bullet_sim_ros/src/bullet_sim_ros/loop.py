@@ -29,10 +29,12 @@ def wait(simulation: Simulation) -> None:
         mailbox.run_pending(IDLE)
         simulation.restart_pace()
         return
-    while (ahead := simulation.pacer.ahead(simulation.due())) > 0 and not simulation.stopped():
-        mailbox.run_pending(min(ahead, IDLE))
-        if world.paused:
-            return
+    due = simulation.due()
+    while (ahead := simulation.pacer.ahead(due)) > 0 and not simulation.stopped():
+        if mailbox.run_pending(min(ahead, IDLE)):
+            if world.paused:
+                return
+            due = simulation.due()
     mailbox.run_pending()
 
 

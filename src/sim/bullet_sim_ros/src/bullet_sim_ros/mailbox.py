@@ -51,15 +51,18 @@ class Mailbox:
             caller = header.get("callerid", "")
             self.post(lambda: [observe(name, caller) for observe in self.each_call])
 
-    def run_pending(self, wait: float = 0.0) -> None:
-        """From the loop: run the waiting calls; `wait` for a first one (s, wall)."""
+    def run_pending(self, wait: float = 0.0) -> bool:
+        """From the loop: run the waiting calls; `wait` for a first one (s, wall). False: none came.
+        """
+        ran = False
         try:
             item = self._calls.get(timeout=wait) if wait else self._calls.get_nowait()
             while True:
+                ran = True
                 self._run(*item)
                 item = self._calls.get_nowait()
         except queue.Empty:
-            return
+            return ran
 
     def close(self) -> None:
         """From the loop: refuse calls that still wait, with Closed."""

@@ -159,11 +159,11 @@ def watch(senders: Senders) -> None:
 
 def _watch(senders: Senders) -> None:
     master, reports, me = rosgraph.Master(rospy.get_name()), Reports(), rospy.get_name()
-    ended = threading.Event()
+    graph, ended = Graph({}, {}, {}), threading.Event()
     rospy.on_shutdown(ended.set)
     while not ended.wait(LOOK):
         try:
-            graph = _graph(master)
+            graph = _graph(master, graph)
         except (OSError, MasterException, HTTPException, ExpatError):
             continue  # the master is busy, or has ended, which others say
         now = time.monotonic()
@@ -173,6 +173,10 @@ def _watch(senders: Senders) -> None:
             log.warning(fault.text, *fault.values)
 
 
-def _graph(master: rosgraph.Master) -> Graph:
-    publishers, subscribers, _services = master.getSystemState()
-    return Graph(dict(publishers), dict(subscribers), dict(master.getTopicTypes()))
+def _graph(master: rosgraph.Master, last: Graph) -> Graph:
+    """As it is now; types, which come with registrations, are not asked for if it is the last one.
+    """
+    publishers, subscribers = map(dict, master.getSystemState()[:2])
+    if (publishers, subscribers) == (last.publishers, last.subscribers):
+        return last
+    return Graph(publishers, subscribers, dict(master.getTopicTypes()))
