@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 from sim_bench.acceptance import Criterion, criteria, judge
 from sim_bench.figures import Figure, figure, ratio
-from sim_bench.follower import frame_ages, real_time_factor
-from sim_bench.own_process import OwnProcess
+from sim_bench.follower import frame_ages
+from sim_bench.own_process import Contest, OwnProcess
 from sim_bench.parts import growth, memory, robots, step
-from sim_bench.probes import ClockStatistics
 from sim_bench.results import (
     PartResult,
     Results,
@@ -101,12 +100,11 @@ def test_a_ratio_compares_runs_that_were_taken_side_by_side():
 
 
 def test_growth_compares_the_last_tenth_with_the_second():
-    caches_fill = [(t, 50 + t) for t in range(10)]
-    assert memory.growth_percent(caches_fill + [(t, 100) for t in range(10, 100)]) == 0
-    leaking = [(t, 100 if t < 90 else 110) for t in range(100)]
-    assert memory.growth_percent(leaking) == pytest.approx(10)
+    caches_fill = list(range(50, 60))
+    assert memory.growth_percent(caches_fill + [100] * 90) == 0
+    assert memory.growth_percent([100] * 90 + [110] * 10) == pytest.approx(10)
     with pytest.raises(ValueError):
-        memory.growth_percent([(0, 1), (1, 1)])
+        memory.growth_percent([1, 1])
 
 
 def test_a_step_cheaper_than_the_engine_alone_is_no_comparison():
@@ -141,15 +139,8 @@ def test_a_frame_without_clock_around_it_has_no_age():
     assert frame_ages(np.array([(60.0, 99.0)]), clock(1.0)) == []
 
 
-def test_the_real_time_factor_is_simulated_time_by_wall_time():
-    assert real_time_factor(clock(0.5)) == pytest.approx(0.5)
-
-
-def test_clock_statistics_notice_a_time_between_two_periods():
-    seen = ClockStatistics(10_000_000)
-    for time_ns in (10_000_000, 20_000_000, 29_999_997):
-        seen.add(time_ns)
-    assert seen.line().split() == ["3", "29999997", "3"]
+def test_a_time_of_the_clock_between_two_periods_is_noticed():
+    assert memory.off_whole_periods(np.array([10_000_000.0, 20_000_000.0, 29_999_997.0])) == 3
 
 
 def test_a_line_that_is_not_whole_yet_is_left_out(tmp_path):
@@ -278,8 +269,17 @@ def test_a_child_is_found_with_its_memory():
 
 def test_the_launch_file_spawns_every_robot_in_its_own_namespace():
     text = robots.launch_file_text()
-    assert all(f'ns="{name}"' in text for name in robots.NAMES)
+    assert all(f'ns="{name}"' in text for name in robots.PLACES)
     assert text.count("spawn_model") == robots.COUNT
+
+
+def test_who_cannot_is_left_out_of_a_contest_unless_it_is_ours(capsys):
+    with Contest({"2": "ours", "x": "theirs"}) as contest:
+        assert contest.turn(int) == {"2": [2]}
+        assert "left out: theirs: invalid literal" in capsys.readouterr().out
+        assert contest.turn(str) == {"2": ["2"]}
+        with pytest.raises(RunError, match="ours: "):
+            contest.turn(getattr, "no_such")
 
 
 def test_a_crash_in_a_process_of_its_own_is_an_error_and_a_result_is_of_each_process():

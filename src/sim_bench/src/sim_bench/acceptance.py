@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
 
-import rospkg
-
+from run_session.files import find_package
 from run_session.records import read_yaml
 from sim_bench.figures import Figure
 
@@ -48,7 +46,7 @@ class Verdict:
 
 def criteria() -> list[Criterion]:
     """All rows, in the order in which they are printed."""
-    rows = read_yaml(Path(rospkg.RosPack().get_path("sim_bench"), "acceptance.yaml"))
+    rows = read_yaml(find_package("sim_bench") / "acceptance.yaml")
     return [Criterion(**{**row, "bound_by": tuple(row.get("bound_by", ()))}) for row in rows]
 
 

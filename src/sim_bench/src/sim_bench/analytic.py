@@ -18,8 +18,7 @@ from bullet_sim.description import Plane, WorldDescription
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.rendering.frame import CameraView
 
-COLUMNS_PER_PIXEL = 4  # samples side by side
-MOST_ROWS_PER_PIXEL, FEWEST_ROWS_PER_PIXEL = 64, 4
+SAMPLES = 4  # of a pixel, in a column and in a row; where there is no edge more make no difference
 # A trilinear texture filter reaches three of the pixel's longest sides on the floor to every side:
 # its coarser level has texels of up to two sides, and takes in one and a half of them.
 FILTER_REACH = 3.0
@@ -79,9 +78,7 @@ def render(description: WorldDescription, view: CameraView) -> AnalyticPicture:
     """The floor and the background as a camera above it sees them."""
     planes, size = floor_planes(description), _pixel_size(view)
     background = 255 * np.array(description.scene.background[:3], np.float32)
-    rgb = np.stack([
-        _row_colours(planes, view, row, _rows_per_pixel(planes, size[row]), background)
-        for row in range(view.height)])
+    rgb = np.stack([_row_colours(planes, view, row, background) for row in range(view.height)])
     return AnalyticPicture(rgb, _clear(planes, view, size))
 
 
@@ -128,13 +125,9 @@ def _floor_plane(description: WorldDescription, pose: Pose, visual: object) -> F
 
 def _edge_distance(texture: np.ndarray, metres_per_texel: float) -> np.ndarray:
     """How far (m) each texel is from the next one that differs from a neighbour."""
-    step = np.zeros(texture.shape[:2], bool)
-    across = np.abs(np.diff(texture, axis=1)).max(axis=2) > EDGE_STEP
-    along = np.abs(np.diff(texture, axis=0)).max(axis=2) > EDGE_STEP
-    step[:, 1:] |= across
-    step[:, :-1] |= across
-    step[1:] |= along
-    step[:-1] |= along
+    cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
+    far = np.maximum(cv2.dilate(texture, cross) - texture, texture - cv2.erode(texture, cross))
+    step = far.max(axis=2) > EDGE_STEP
     return cv2.distanceTransform((~step).astype(np.uint8), cv2.DIST_L2, 5) * metres_per_texel
 
 
@@ -149,37 +142,20 @@ def _pixel_size(view: CameraView) -> np.ndarray:
     return np.where(met[:, 1:] & met[:, :-1], longest, np.inf)
 
 
-def _rows_per_pixel(planes: list[FloorPlane], size: np.ndarray) -> int:
-    """As many samples that two fall into each texel, within bounds."""
-    textured = [plane for plane in planes if plane.texture is not None]
-    longest = size[np.isfinite(size)]
-    if not textured or not len(longest):
-        return FEWEST_ROWS_PER_PIXEL
-    texel = min(max(plane.size) / max(plane.texture.shape) for plane in textured)
-    wanted = int(np.ceil(2 * longest.max() / texel))
-    return min(max(wanted, FEWEST_ROWS_PER_PIXEL), MOST_ROWS_PER_PIXEL)
-
-
-def _row_colours(
-    planes: list[FloorPlane], view: CameraView, row: int, samples: int, background: np.ndarray
-) -> np.ndarray:
-    """(width, 3) float32: the mean of samples x COLUMNS_PER_PIXEL points of each pixel."""
-    count = view.width * COLUMNS_PER_PIXEL
-    columns = (np.arange(count) + 0.5) / COLUMNS_PER_PIXEL
-    rows = row + (np.arange(samples) + 0.5) / samples
-    x, y, met = floor_points(view, *np.meshgrid(columns, rows))
+def _row_colours(planes: list[FloorPlane], view: CameraView, row: int,
+                 background: np.ndarray) -> np.ndarray:
+    """(width, 3) float32: the mean of SAMPLES x SAMPLES points of each pixel."""
+    inside = (np.arange(view.width * SAMPLES) + 0.5) / SAMPLES
+    x, y, free = floor_points(view, *np.meshgrid(inside, row + inside[:SAMPLES]))
     colours = np.broadcast_to(background, (*x.shape, 3)).copy()
-    open_points = met
     for plane in planes:
         u, v = plane.local(x, y)
-        here = open_points & plane.inside(u, v)
-        if not here.any():
-            continue
-        seen = 255.0 if plane.texture is None else plane.look_up(plane.texture, u, v)[here]
-        colours[here] = seen * plane.light
-        open_points = open_points & ~here
-    shape = (samples, view.width, COLUMNS_PER_PIXEL, 3)
-    return colours.reshape(shape).mean(axis=(0, 2))
+        here = free & plane.inside(u, v)
+        if here.any():
+            seen = 255.0 if plane.texture is None else plane.look_up(plane.texture, u, v)[here]
+            colours[here] = seen * plane.light
+            free &= ~here
+    return colours.reshape(SAMPLES, view.width, SAMPLES, 3).mean(axis=(0, 2))
 
 
 def _clear(planes: list[FloorPlane], view: CameraView, size: np.ndarray) -> np.ndarray:

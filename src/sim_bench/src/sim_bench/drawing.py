@@ -83,10 +83,9 @@ class PybulletDrawing:
             "shadow": 0, "lightDirection": _light_direction(scene),
             "flags": pybullet.ER_NO_SEGMENTATION_MASK} if fastest else {}
         with tempfile.TemporaryDirectory(prefix="bench-") as folder, quiet(STDOUT, STDERR):
-            parts = [(node, part) for node in scene.nodes.values() for part in node.shape.parts]
             self._bodies: list[tuple[Node, int]] = [
-                (node, self._show(part, Path(folder, f"{number}.obj")))
-                for number, (node, part) in enumerate(parts)]
+                (node, self._show(part, Path(folder, f"{id(part)}.obj")))
+                for node in scene.nodes.values() for part in node.shape.parts]
 
     def place(self) -> None:
         """Put every body where its link is in the scene; no part of the drawing time."""
@@ -94,20 +93,14 @@ class PybulletDrawing:
             rank = self._ranks.get(node.shape.plane_size, 0)
             pose = Pose((0.0, 0.0, -rank * RECESS)) * node.pose
             pybullet.resetBasePositionAndOrientation(
-                body, pose.position, pose.orientation, physicsClientId=self._client
-            )
+                body, pose.position, pose.orientation, physicsClientId=self._client)
 
     def draw(self, view: CameraView) -> np.ndarray:
         """The picture as PyBullet gives it: (height, width, 4) uint8 RGBA."""
-        _, _, pixels, _, _ = pybullet.getCameraImage(
-            view.width,
-            view.height,
-            view_matrix(view.pose).T.ravel().tolist(),
-            projection_matrix(view).T.ravel().tolist(),
-            renderer=self._renderer,
-            physicsClientId=self._client,
-            **self._settings,
-        )
+        pixels = pybullet.getCameraImage(
+            view.width, view.height, view_matrix(view.pose).T.ravel().tolist(),
+            projection_matrix(view).T.ravel().tolist(), renderer=self._renderer,
+            physicsClientId=self._client, **self._settings)[2]
         return np.reshape(pixels, (view.height, view.width, 4))
 
     def _load_plugin(self) -> None:
@@ -115,9 +108,7 @@ class PybulletDrawing:
         if found is None or found.origin is None:
             raise RunError(f"PyBullet was installed without its plugin {PLUGIN_MODULE}")
         with quiet(STDOUT, STDERR):
-            number = pybullet.loadPlugin(
-                found.origin, PLUGIN_SUFFIX, physicsClientId=self._client
-            )
+            number = pybullet.loadPlugin(found.origin, PLUGIN_SUFFIX, physicsClientId=self._client)
         if number < 0:
             raise RunError(f"PyBullet's plugin {PLUGIN_MODULE} does not load")
 

@@ -11,14 +11,13 @@ needs on its way, well below a millisecond, is not in it.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import rospkg
 
 from run_session import simulator
 from run_session.failure import RunError
+from run_session.files import find_package
 from run_session.processes import Child
 from sim_bench.probes import CLOCK, FRAME
 from sim_bench.ros_run import RosRun, read_lines
@@ -28,7 +27,8 @@ COURSE_LAUNCH = ("learning_topic", "0course.launch", "gui:=false", "model:=waffl
 FOLLOWER = "follower"  # its process's name
 IMAGES, COMMANDS = "/camera/rgb/image_raw", "/cmd_vel"
 # As fast as it goes, paused until all are connected; and then the world waits for each command.
-FAST = ("real_time_factor:=0", "paused:=true")
+PAUSED = "paused:=true"
+FAST = ("real_time_factor:=0", PAUSED)
 LOCKSTEP = (*FAST, f"lockstep:={COMMANDS}")
 CIRCLE = "{linear: {x: 0.15}, angular: {z: 0.3}}"  # m/s, rad/s
 AROUND = 0.5  # s, simulated, to either side of a frame's stamp
@@ -40,45 +40,39 @@ class Seen(NamedTuple):
     frames: np.ndarray  # (n, 3): when a callback began, the image's stamp, what the callback took
     clock: np.ndarray  # (n, 2): a message's arrival, and its time
 
-    def between(self, start: float, end: float) -> Seen:
-        """What was seen in a window of wall time (s)."""
-        return Seen(*(rows[(start <= rows[:, 0]) & (rows[:, 0] < end)] for rows in self))
+    def frames_between(self, start: float, end: float) -> np.ndarray:
+        """The frames of a window of wall time (s)."""
+        return self.frames[(start <= self.frames[:, 0]) & (self.frames[:, 0] < end)]
 
 
 class Follower:
     """Lesson 05 as it is, on the course, with a camera of that size."""
 
     def __init__(self, run: RosRun, size: tuple[int, int], *arguments: str):
-        """`arguments`: of the course's launch file."""
-        lesson = Path(rospkg.RosPack().get_path("learning_topic")) / "scripts" / LESSON
-        self._run, self._width = run, size[0]
-        self._file = run.log_folder / "follower.txt"
+        """`arguments`: of the course's launch file. Returns when it drives; if that begins paused,
+        time begins once both ends of the loop are connected. RunError for another size of frames.
+        """
+        lesson = find_package("learning_topic") / "scripts" / LESSON
+        self._run, self._file = run, run.log_folder / "follower.txt"
         self._file.unlink(missing_ok=True)
         self.launched = launch_course(
             run, f"camera_width:={size[0]}", f"camera_height:={size[1]}", *arguments)
         self._child = run.probe(FOLLOWER, str(self._file), str(lesson))
-
-    def unpause(self) -> None:
-        """Let simulated time begin, once both ends of the loop are connected."""
-        self._run.wait(lambda: simulator.subscribers(IMAGES), "the follower's subscription")
-        simulator.unpause()
-
-    def wait_until_driving(self) -> None:
-        """Returns when frames come; RunError if they are not of the size that was asked for."""
-        self._run.wait(self._rows_of_frames, "the first frame")
-        width = int(self._rows_of_frames()[0][3])
-        if width != self._width:
-            raise RunError(f"the camera is {width} px wide, not the {self._width} asked for")
+        if PAUSED in arguments:
+            run.wait(lambda: simulator.subscribers(IMAGES), "the follower's subscription")
+            simulator.unpause()
+        first = run.wait(lambda: self._rows(FRAME), "the first frame")[0]
+        if first[3] != size[0]:
+            raise RunError(f"the camera is {first[3]:.0f} px wide, not the {size[0]} asked for")
 
     def end(self) -> Seen:
         """What was seen; ends the lesson and the course."""
-        frames = [(row[1], row[2], row[4]) for row in self._rows_of_frames()]
-        clock = [row[1:3] for row in read_lines(self._file) if row[0] == CLOCK]
+        seen = Seen(np.array(self._rows(FRAME))[:, [1, 2, 4]], np.array(self._rows(CLOCK))[:, 1:3])
         self._run.stop(self._child, self.launched)
-        return Seen(np.array(frames), np.array(clock))
+        return seen
 
-    def _rows_of_frames(self) -> list[tuple[float, ...]]:
-        return [row for row in read_lines(self._file) if row[0] == FRAME]
+    def _rows(self, kind: int) -> list[tuple[float, ...]]:
+        return [row for row in read_lines(self._file) if row[0] == kind]
 
 
 def launch_course(run: RosRun, *arguments: str) -> Child:
@@ -102,12 +96,6 @@ def frame_ages(frames: np.ndarray, clock: np.ndarray) -> list[float]:
         if first < here < last:
             ages.append(wall - _due(clock[first:here], clock[here:last], stamp))
     return ages
-
-
-def real_time_factor(clock: np.ndarray) -> float:
-    """Simulated seconds a wall second between the first and the last message."""
-    wall, simulated = clock[-1] - clock[0]
-    return simulated / wall
 
 
 def _due(before: np.ndarray, after: np.ndarray, stamp: float) -> float:

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-import rospkg
 
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.meshes.part import grid_faces
+from run_session.files import find_package
 
 SIGNS = 12
 PICTURE_PX = 1024  # a side of a sign's picture
@@ -38,7 +38,7 @@ def signs(folder: Path, triangles: int) -> MadeWorld:
     """A road with twelve signs of so many triangles together, and a camera before them."""
     each = triangles // SIGNS
     write_stl(folder / "sign.stl", [_turned_on_a_lathe(round(each * ROUND)),
-                                    _sheet(round(each * PLATE), 0.2, 0.2, (0.021, 0.0, 0.3))])
+                                    _plate(round(each * PLATE))])
     for number in range(SIGNS):
         cv2.imwrite(str(folder / f"sign_{number}.png"), _picture(number))
     (folder / "signs.material").write_text("".join(
@@ -73,7 +73,7 @@ def write_stl(path: Path, surfaces: list[Surface]) -> None:
 
 
 def _world(where: Path, name: str, topics: tuple[str, ...], **arguments: object) -> MadeWorld:
-    template = Path(rospkg.RosPack().get_path("sim_bench"), "worlds", f"{name}.world.xacro")
+    template = find_package("sim_bench") / "worlds" / f"{name}.world.xacro"
     text = expand(template, {key: str(value) for key, value in arguments.items()})
     file = where / f"{name}.world"
     file.write_text(text, encoding="utf-8")
@@ -95,22 +95,24 @@ def _turned_on_a_lathe(triangles: int) -> Surface:
     return vertices, grid_faces(len(radius), sides + 1)
 
 
-def _sheet(triangles: int, wide: float, high: float, middle: tuple[float, float, float]) -> Surface:
+def _plate(triangles: int) -> Surface:
     """Flat, facing x, and yet cut up, as exporters do."""
-    side = max(2, math.isqrt(triangles // 2) + 1)
-    z, y = np.meshgrid(np.linspace(-high / 2, high / 2, side),
-                       np.linspace(-wide / 2, wide / 2, side), indexing="ij")
-    vertices = np.stack([0 * y, y, z], axis=-1).reshape(-1, 3) + middle
-    return vertices, grid_faces(side, side)
+    z, y = _square(triangles, 0.2)
+    return np.stack([0 * y + 0.021, y, z + 0.3], axis=-1).reshape(-1, 3), grid_faces(*y.shape)
 
 
 def _rough_floor(triangles: int) -> Surface:
     """Gentle waves and bumps of some mm, from a seed."""
-    side = math.isqrt(triangles // 2) + 1
-    y, x = np.meshgrid(*[np.linspace(-GROUND / 2, GROUND / 2, side)] * 2, indexing="ij")
+    y, x = _square(triangles, GROUND)
     bumps = np.random.default_rng(0).normal(0.0, 0.002, x.shape)
     z = 0.02 * np.sin(1.3 * x) * np.cos(0.9 * y) + bumps
-    return np.stack([x, y, z], axis=-1).reshape(-1, 3), grid_faces(side, side)
+    return np.stack([x, y, z], axis=-1).reshape(-1, 3), grid_faces(*x.shape)
+
+
+def _square(triangles: int, wide: float) -> list[np.ndarray]:
+    """Both coordinates (m) of a grid around 0, the first along its rows, of so many triangles."""
+    return np.meshgrid(*[np.linspace(-wide / 2, wide / 2, math.isqrt(triangles // 2) + 1)] * 2,
+                       indexing="ij")
 
 
 def _picture(number: int) -> np.ndarray:

@@ -51,13 +51,14 @@ def _run(settings: Settings) -> int:
 def _measure(part: str, settings: Settings) -> PartResult:
     """One part; its failure does not keep the others from being measured."""
     module = importlib.import_module(f"sim_bench.parts.{part}")
-    began, others = time.monotonic(), _Others()
+    began, others = time.monotonic(), _used_by_others()
     try:
         figures, failure = tuple(module.measure(settings)), ""
     except RunError as error:
         complain(f"bench: part {part}", error)
         figures, failure = (), str(error)
-    return PartResult(part, figures, time.monotonic() - began, others.percent(), failure)
+    took = time.monotonic() - began
+    return PartResult(part, figures, took, 100 * (_used_by_others() - others) / took, failure)
 
 
 def _machine() -> dict:
@@ -72,20 +73,8 @@ def _machine() -> dict:
     }
 
 
-class _Others:
-    """Processor time of everything that is neither this process nor started by it."""
-
-    def __init__(self) -> None:
-        self._began, self._spent = time.monotonic(), self._now()
-
-    def percent(self) -> float:
-        """Of one core, since this was made."""
-        return max(0.0, 100 * (self._now() - self._spent) / (time.monotonic() - self._began))
-
-    @staticmethod
-    def _now() -> float:
-        """s since the machine's start, of all cores together."""
-        all_, ours = psutil.cpu_times(), os.times()
-        busy = all_.user + all_.nice + all_.system + all_.irq + all_.softirq
-        ended = ours.user + ours.system + ours.children_user + ours.children_system
-        return busy - ended - sum(process.cpu for process in processes())
+def _used_by_others() -> float:
+    """Processor time (s, of all cores) of what is neither this process nor started by it."""
+    all_, ours = psutil.cpu_times(), os.times()
+    return (all_.user + all_.nice + all_.system + all_.irq + all_.softirq
+            - sum(ours[:4]) - sum(process.cpu for process in processes()))

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import TypeVar
 
 from bullet_sim.physics.engine import STDOUT
 from run_session.failure import RunError
+from sim_bench.settings import say
 
 LIMIT = 120  # s, wall, for one call
 T = TypeVar("T")
@@ -43,6 +45,33 @@ class OwnProcess:
         except (RunError, OSError) as error:
             why = str(error)
         raise RunError(f"{self._what}: {why}")
+
+
+class Contest(contextlib.ExitStack):
+    """Contenders that take turns, each in processes of its own; the first of them is ours."""
+
+    def __init__(self, says: Mapping[str, str], count: int = 1):
+        """`says`: their names in an error; `count`: processes of each, which work at once."""
+        super().__init__()
+        self._ours = next(iter(says))
+        self._processes = {kind: self.enter_context(OwnProcess(name, count))
+                           for kind, name in says.items()}
+
+    def turn(self, function: Callable[..., T], *arguments: object) -> dict[str, list[T]]:
+        """What function(kind, *arguments) returns in each process of each contender.
+
+        One of the others that cannot is left out from then on, with a line; RunError if we cannot.
+        """
+        found = {}
+        for kind in list(self._processes):
+            try:
+                found[kind] = self._processes[kind].call(function, kind, *arguments)
+            except RunError as error:
+                if kind == self._ours:
+                    raise
+                say(f"left out: {error}")
+                del self._processes[kind]
+        return found
 
 
 def _prepare() -> None:

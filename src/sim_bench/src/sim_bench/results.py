@@ -61,10 +61,11 @@ def write_json(results: Results, path: Path) -> None:
 
 def figure_table(result: PartResult) -> str:
     """One part's figures: median, least, greatest and number of runs."""
-    rows = [(result.part, "median", "min", "max", "runs", "unit")]
-    rows += [(f"  {f.name}", _short(f.median), _short(f.min), _short(f.max), str(len(f.runs)),
-              f.unit) for f in result.figures]
-    text = report.table(rows, left=(0, 5))
+    text = report.table_of({
+        result.part: lambda one: f"  {one.name}", "median": lambda one: _short(one.median),
+        "min": lambda one: _short(one.min), "max": lambda one: _short(one.max),
+        "runs": lambda one: str(len(one.runs)), "unit": lambda one: one.unit,
+    }, result.figures, left=(0, 5))
     if result.others_percent > MUCH:
         text += (f"\n  other processes used {result.others_percent:.0f} % of a core meanwhile:"
                  " a quiet machine does better")

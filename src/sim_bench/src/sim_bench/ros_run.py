@@ -7,12 +7,13 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
-import rospkg
+import numpy as np
 
 from run_session import simulator
+from run_session.files import find_package
 from run_session.launch import Launched
 from run_session.processes import Child, CpuMeter, Family
 from run_session.session import Session
@@ -28,12 +29,25 @@ LEAST_CPU = 0.5  # % of a core; who uses less is left out
 WAITING = "wait"  # for the picture before, while that is drawn: no work
 LEAST = 0.02  # of all work; what takes less is left out
 PROFILE = "profile:=true"
-_TABLE = re.compile(r"^stage +times .*$", re.MULTILINE)
-_ROW = re.compile(r"^(\S.*?) +(\d+) +([\d.]+) +[\d.]+ +[\d.]+%$")  # name, times, ms each, ...
+_TABLE = re.compile(r"^stage +times .*\n((?:.+%\n?)*)", re.MULTILINE)  # of the simulator's work
+_ROW = re.compile(r"^(\S.*?) +(\d+) +([\d.]+) +[\d.]+ +[\d.]+%$", re.MULTILINE)  # times, ms each
+
+
+class Window(NamedTuple):
+    """What was measured between two moments on the wall (s)."""
+
+    start: float
+    end: float
+    factor: float  # simulated seconds in one on the wall
+    cpu: dict[str, float]  # each process's share of a core, %
 
 
 class RosRun(Launched):
-    """roscore, launch files and probes."""
+    """roscore, launch files and probes; logs go to OUT/log/NAME."""
+
+    def __init__(self, family: Family, settings: Settings, name: str):
+        super().__init__(family, settings.out / "log" / name, vehicle="waffle")
+        self._settings = settings
 
     def launch(self, *arguments: str) -> Child:
         """roslaunch with these arguments."""
@@ -48,7 +62,16 @@ class RosRun(Launched):
 
     def probe(self, kind: str, *arguments: str) -> Child:
         """One of the nodes in `probes`, as a process of that name."""
-        return self.start(kind, probe_command(kind, *arguments))
+        return self.start(kind, [sys.executable, "-P", "-m", "sim_bench.probes", kind, *arguments,
+                                 f"__name:={kind}"])
+
+    def listen(self, *topics: str) -> Child:
+        """A process that hears these; returns when something of each has come."""
+        file = self.log_folder / "heard.txt"
+        file.unlink(missing_ok=True)
+        listener = self.probe("listener", str(file), *topics)
+        self.wait(lambda: len(set(read_lines(file))) == len(topics), "all topics")
+        return listener
 
     def wait(self, condition: object, what: str) -> object:
         """What the condition gives once it is true; RunError if that takes too long."""
@@ -66,32 +89,26 @@ class RosRun(Launched):
         for child in children:
             self.end(child, END_LIMIT)
 
-    def windows(self, count: int, length: float) -> list[Window]:
-        """So many windows of wall time (s), one after the other."""
+    def windows(self, count: int, length: float, warm_up: float) -> list[Window]:
+        """After `warm_up` so many windows of wall time (s), one after the other.
+
+        Fewer and shorter ones in a quick pass.
+        """
+        self.pause(warm_up)
         meter, found = CpuMeter(), []
-        for _ in range(count):
+        for _ in range(self._settings.runs(count)):
             start, simulated = time.monotonic(), simulator.simulated_time()
-            self.pause(length)
+            self.pause(self._settings.seconds(length))
             factor = (simulator.simulated_time() - simulated) / (time.monotonic() - start)
             found.append(Window(start, time.monotonic(), factor, meter.look()))
         return found
 
 
-@dataclass(frozen=True)
-class Window:
-    """What was measured between two moments on the wall (s)."""
-
-    start: float
-    end: float
-    factor: float  # simulated seconds in one on the wall
-    cpu: dict[str, float]  # each process's share of a core, %
-
-
 @contextmanager
 def ros_run(settings: Settings, name: str) -> Iterator[RosRun]:
-    """A run whose logs go to OUT/log/NAME; everything it started has ended when this is left."""
+    """A run with its roscore; everything it started has ended when this is left."""
     with Family() as family:
-        run = RosRun(family, settings.out / "log" / name, vehicle="waffle")
+        run = RosRun(family, settings, name)
         run.start_roscore()
         yield run
 
@@ -101,17 +118,12 @@ def marked_lap(settings: Settings, name: str, *options: str) -> dict:
 
     Of 15 simulated seconds in a quick pass.
     """
-    script = f"{rospkg.RosPack().get_path('evaluation')}/scripts/course_run.py"
+    script = str(find_package("evaluation") / "scripts" / "course_run.py")
     folder = settings.out / "log" / name
     short = ("--duration", str(QUICK_LAP)) if settings.quick else ()
     command = [sys.executable, "-P", script, "--out", str(folder / "course"), *short, *options]
     with Session(folder) as session:
         return session.drive(command, folder / "course", "a lap", LAP_LIMIT)
-
-
-def probe_command(kind: str, *arguments: str) -> list[str]:
-    """What starts one of the nodes in `probes`."""
-    return [sys.executable, "-P", "-m", "sim_bench.probes", kind, *arguments, f"__name:={kind}"]
 
 
 def read_lines(path: Path) -> list[tuple[float, ...]]:
@@ -136,13 +148,14 @@ def stages(log: Path, turn: str) -> dict[str, float]:
     From the tables that `profile:=true` prints, the first to the last, or the only one. A turn is
     what the stage `turn` is done once in, a frame for example; empty where it was not done.
     """
-    tables = _tables(log.read_text(encoding="utf-8", errors="replace"))
+    text = log.read_text(encoding="utf-8", errors="replace")
+    tables = [{name: (int(times), int(times) * float(ms)) for name, times, ms in _ROW.findall(each)}
+              for each in _TABLE.findall(text)]
     if not tables:
         return {}
     first, last = (tables[0] if len(tables) > 1 else {}), tables[-1]
-    spent = {stage: (times - first.get(stage, (0, 0.0))[0], ms - first.get(stage, (0, 0.0))[1])
-             for stage, (times, ms) in last.items()}
-    turns = spent.get(turn, (0, 0.0))[0]
+    spent = {stage: np.subtract(done, first.get(stage, (0, 0.0))) for stage, done in last.items()}
+    turns = spent[turn][0] if turn in spent else 0
     return {stage: ms / turns for stage, (_, ms) in spent.items() if stage != WAITING and turns > 0}
 
 
@@ -151,16 +164,3 @@ def stage_figures(name: str, work: dict[str, float]) -> list[Figure]:
     least = LEAST * sum(work.values())
     return [figure(f"{name}.stage.{stage.replace(' ', '_')}", "ms", [ms])
             for stage, ms in sorted(work.items(), key=lambda item: -item[1]) if ms > least]
-
-
-def _tables(text: str) -> list[dict[str, tuple[int, float]]]:
-    """Of each table, by stage: how often it was done, and ms of all together."""
-    tables = []
-    for head in _TABLE.finditer(text):
-        tables.append({})
-        for line in text[head.end():].lstrip("\n").splitlines():
-            row = _ROW.match(line)
-            if row is None:
-                break
-            tables[-1][row[1]] = (int(row[2]), int(row[2]) * float(row[3]))
-    return tables

@@ -9,8 +9,6 @@ right after: what the node adds to it is the difference.
 
 from __future__ import annotations
 
-import numpy as np
-
 from run_session import simulator
 from sim_bench.figures import Figure, figure
 from sim_bench.follower import FAST, LOCKSTEP, Follower, launch_course, send_circle
@@ -31,45 +29,31 @@ def measure(settings: Settings) -> list[Figure]:
     found = [figure("make_course.real_time_factor", "x", [report["real_time_factor"]])]
     with ros_run(settings, "fast") as run:
         say("lesson 05 in lockstep at 640x480")
-        found += _lockstep(run, settings)
+        found += _lockstep(run)
         say("as fast as it goes, no camera subscriber")
         return found + _without_camera(run, settings)
 
 
-def _lockstep(run: RosRun, settings: Settings) -> list[Figure]:
+def _lockstep(run: RosRun) -> list[Figure]:
     follower = Follower(run, SIZE, *LOCKSTEP, PROFILE)
-    follower.unpause()
-    follower.wait_until_driving()
-    run.pause(WARM_UP)
-    start = simulator.simulated_time()
-    windows = run.windows(settings.runs(WINDOWS), settings.seconds(WINDOW))
-    end = simulator.simulated_time()
-    stamps = follower.end().frames[:, 1]
-    frames = np.count_nonzero((start < stamps) & (stamps <= end))
-    wall = windows[-1].end - windows[0].start
-    return [
-        figure("lockstep.real_time_factor", "x", [window.factor for window in windows]),
-        figure("lockstep.frames", "frames/s", [frames / wall]),
-        figure("lockstep.frames_a_simulated_s", "frames", [frames / (end - start)]),
-        *stage_figures("lockstep", stages(follower.launched.log, turn="send")),
-    ]
+    factors = [window.factor for window in run.windows(WINDOWS, WINDOW, WARM_UP)]
+    follower.end()
+    return [figure("lockstep.real_time_factor", "x", factors),
+            *stage_figures("lockstep", stages(follower.launched.log, turn="send"))]
 
 
 def _without_camera(run: RosRun, settings: Settings) -> list[Figure]:
     launched = launch_course(run, *FAST)
     simulator.unpause()
-    found = _state(run, "standing", settings)
+    found = _state(run, "standing")
     circle = send_circle(run)
-    found += _state(run, "driving", settings)
+    found += _state(run, "driving")
     run.stop(circle, launched)
     bare = [1e6 * bare_step_time() for _ in range(settings.runs(WINDOWS))]
     return [*found, figure("no_camera.driving.bare_step", "us", bare)]
 
 
-def _state(run: RosRun, state: str, settings: Settings) -> list[Figure]:
-    run.pause(WARM_UP)
-    windows = run.windows(settings.runs(WINDOWS), settings.seconds(WINDOW))
-    return [
-        figure(f"no_camera.{state}.real_time_factor", "x", [one.factor for one in windows]),
-        figure(f"no_camera.{state}.step", "us", [1e6 * STEP / one.factor for one in windows]),
-    ]
+def _state(run: RosRun, state: str) -> list[Figure]:
+    factors = [window.factor for window in run.windows(WINDOWS, WINDOW, WARM_UP)]
+    return [figure(f"no_camera.{state}.real_time_factor", "x", factors),
+            figure(f"no_camera.{state}.step", "us", [1e6 * STEP / factor for factor in factors])]

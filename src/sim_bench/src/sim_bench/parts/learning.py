@@ -8,7 +8,6 @@ and the picture as an array; no score. In two processes both count at once.
 
 from __future__ import annotations
 
-import contextlib
 import importlib.util
 import time
 from collections.abc import Callable
@@ -20,7 +19,7 @@ from run_session.failure import RunError
 from sim_bench.course import CourseWorld, drive_of
 from sim_bench.drawing import PLUGIN, SAYS, TINY, PybulletDrawing
 from sim_bench.figures import Figure, figure, ratio
-from sim_bench.own_process import OwnProcess
+from sim_bench.own_process import Contest
 from sim_bench.settings import Settings, say
 
 SIZES = ((84, 84), (320, 240))  # px
@@ -36,37 +35,21 @@ def measure(settings: Settings) -> list[Figure]:
         raise RunError("no module gymnasium: scripts/setup.sh --learning")
     found = []
     for count in (1, 2):
-        with contextlib.ExitStack() as stack:
-            contenders = {kind: stack.enter_context(OwnProcess(SAYS.get(kind, kind), count))
-                          for kind in (COARSE, TINY, PLUGIN)}
+        with Contest({COARSE: COARSE, TINY: SAYS[TINY], PLUGIN: SAYS[PLUGIN]}, count) as contest:
             for size in SIZES:
                 say(f"environment steps at {size[0]}x{size[1]}, {count} at once")
-                rates = _rates(contenders, size, settings)
-                found += _figures(rates, f"{size[0]}x{size[1]}.{count}")
+                found += _compare(contest, size, f"{size[0]}x{size[1]}.{count}", settings)
     return found
 
 
-def _rates(contenders: dict[str, OwnProcess], size: tuple[int, int],
-           settings: Settings) -> dict[str, list[float]]:
-    """Steps a second of contenders that take turns; one that cannot is left out, with a line."""
-    rates: dict[str, list[float]] = {kind: [] for kind in contenders}
-    for run in range(settings.runs(RUNS) + 1):
-        for kind in list(rates):
-            try:
-                total = sum(contenders[kind].call(_rate, kind, size, settings.seconds(SECONDS)))
-            except RunError as error:
-                say(f"left out: {error}")
-                del rates[kind]
-                continue
-            if run:  # the first is for opening things
-                rates[kind].append(total)
-    return rates
-
-
-def _figures(rates: dict[str, list[float]], name: str) -> list[Figure]:
+def _compare(contest: Contest, size: tuple[int, int], name: str,
+             settings: Settings) -> list[Figure]:
+    turns = [contest.turn(_rate, size, settings.seconds(SECONDS))
+             for _ in range(settings.runs(RUNS) + 1)][1:]  # the first is for opening things
+    rates = {kind: [sum(turn[kind]) for turn in turns] for kind in turns[-1]}
     found = [figure(f"steps.{kind}.{name}", "1/s", values) for kind, values in rates.items()]
-    return found + [ratio(f"ratio.{COARSE}.{kind}.{name}", rates[COARSE], rates[kind])
-                    for kind in (TINY, PLUGIN) if kind in rates and COARSE in rates]
+    return found + [ratio(f"ratio.{COARSE}.{kind}.{name}", rates[COARSE], values)
+                    for kind, values in rates.items() if kind != COARSE]
 
 
 def _rate(kind: str, size: tuple[int, int], seconds: float) -> float:
@@ -105,8 +88,7 @@ def _their_step(kind: str, size: tuple[int, int]) -> Callable[[], object]:
     course = CourseWorld(SUB_STEP)
     waffle = course.spawn_waffle()
     drive = drive_of(waffle, SPEED, TURN)
-    drawing = PybulletDrawing(course.world.update_scene(), plugin=kind == PLUGIN,
-                              fastest=False)
+    drawing = PybulletDrawing(course.world.update_scene(), plugin=kind == PLUGIN, fastest=False)
 
     def step() -> np.ndarray:
         drive.update(SUB_STEPS * SUB_STEP)

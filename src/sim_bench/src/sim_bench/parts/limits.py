@@ -1,15 +1,15 @@
 """Lower bounds on this machine, to put the other figures in proportion.
 
 A plane of one colour over the whole picture, the least that OpenGL fills one with; a copy of a
-depth camera's frame of 1920x1080 in memory; and the same frame from one process to another over a
-bare socket of the loopback interface, as each of its messages goes.
+depth camera's frame of 1920x1080 in memory; and the same frame over a bare socket of the loopback
+interface, as each of its messages goes.
 """
 
 from __future__ import annotations
 
-import multiprocessing
 import socket
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from bullet_sim.rendering.frame import CameraView
 from bullet_sim.rendering.renderer import open_renderer
 from bullet_sim.rendering.scene import Scene
 from sim_bench.figures import Figure, figure
-from sim_bench.own_process import LIMIT, OwnProcess
+from sim_bench.own_process import OwnProcess
 from sim_bench.settings import Settings, say
 
 SIZES = ((640, 480), (1920, 1080))  # px
@@ -37,7 +37,7 @@ def measure(settings: Settings) -> list[Figure]:
             ((wall, cpu),) = drawing.call(_flat_pictures, (width, height), runs)
             found += [figure(f"flat_picture.{width}x{height}", "ms", wall),
                       figure(f"flat_picture_cpu.{width}x{height}", "ms", cpu)]
-    say(f"{DEPTH_FRAME / 1e6:.0f} MB in memory, and from process to process")
+    say(f"{DEPTH_FRAME / 1e6:.0f} MB in memory, and over a socket")
     return [*found, figure("depth_frame.copy", "ms", _copies(runs)),
             figure("depth_frame.loopback", "ms", _loopback(runs))]
 
@@ -75,33 +75,14 @@ def _copies(runs: int) -> list[float]:
 
 
 def _loopback(runs: int) -> list[float]:
-    """Until the other process has it all, in memory that it has had before."""
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        reader = multiprocessing.get_context("spawn").Process(
-            target=_receive, args=(server.getsockname()[1],), daemon=True)
-        reader.start()
-        server.settimeout(LIMIT)
-        connection, _ = server.accept()
-    frame, took = bytes(DEPTH_FRAME), []
-    with connection:
-        connection.settimeout(LIMIT)
+    """Until a thread that waits in the kernel has it all, in memory that it has had before."""
+    frame, heard, took = bytes(DEPTH_FRAME), bytearray(DEPTH_FRAME), []
+    with (ThreadPoolExecutor(1) as thread, socket.create_server(("127.0.0.1", 0)) as server,
+          socket.create_connection(server.getsockname()) as sender, server.accept()[0] as receiver):
         for _ in range(runs + 1):
             start = time.perf_counter()
-            connection.sendall(frame)
-            connection.recv(1)
+            all_here = thread.submit(receiver.recv_into, heard, 0, socket.MSG_WAITALL)
+            sender.sendall(frame)
+            all_here.result()
             took.append(1e3 * (time.perf_counter() - start))
-    reader.join(LIMIT)
     return took[1:]  # of the first the memory is new
-
-
-def _receive(port: int) -> None:
-    frame = memoryview(bytearray(DEPTH_FRAME))
-    with socket.create_connection(("127.0.0.1", port)) as connection:
-        while True:
-            filled = 0
-            while filled < DEPTH_FRAME:
-                got = connection.recv_into(frame[filled:])
-                if got == 0:
-                    return
-                filled += got
-            connection.sendall(b"k")

@@ -13,6 +13,8 @@ import statistics
 import time
 from collections.abc import Sequence
 
+import numpy as np
+
 from run_session import simulator
 from run_session.processes import memory
 from sim_bench.figures import Figure, figure
@@ -24,75 +26,63 @@ SIZE = (640, 480)  # px
 LOOKS = 200  # at the memory, over a leg
 CAMERA_SHARE = 0.25  # of MEMORY_S, for the leg with the camera
 CLOCK_PERIOD_NS = 10_000_000  # 100 Hz of simulated time, the launch file's default
-CLOCK_WAIT = 2.5  # s, wall, until the probe has written what came last
+CLOCK_WAIT = 1.0  # s, wall, until the probe has written what came last
 SAY_PERIOD = 30.0  # s, wall
-Samples = list[tuple[float, int]]  # simulated s, bytes
 
 
 def measure(settings: Settings) -> list[Figure]:
-    """Percent of growth, megabytes, and nanoseconds that /clock is off."""
+    """Percent of growth, and nanoseconds and milliseconds that /clock is off."""
     length = settings.seconds(settings.memory_s)
     with ros_run(settings, "memory") as run:
         say(f"{length:g} simulated s without a camera")
-        plain, drift = _without_camera(run, length)
+        found = _without_camera(run, length)
         say(f"{CAMERA_SHARE * length:g} simulated s with a camera in lockstep")
-        camera = _with_camera(run, CAMERA_SHARE * length)
-    return [*_figures("no_camera", plain), *_figures("camera", camera), *drift]
+        follower = Follower(run, SIZE, *LOCKSTEP)
+        found.insert(1, _growth("camera", run, CAMERA_SHARE * length))
+        follower.end()
+    return found
 
 
-def growth_percent(samples: Sequence[tuple[float, int]]) -> float:
-    """From the second tenth of (simulated s, bytes) samples to the last, by their medians."""
-    tenth = max(1, len(samples) // 10)
-    if len(samples) < 3 * tenth:
-        raise ValueError(f"{len(samples)} samples are too few for a growth")
-    early = statistics.median(size for _, size in samples[tenth : 2 * tenth])
-    late = statistics.median(size for _, size in samples[-tenth:])
-    return 100.0 * (late - early) / early
+def growth_percent(sizes: Sequence[float]) -> float:
+    """From the second tenth of the samples to the last, by their medians."""
+    tenth = max(1, len(sizes) // 10)
+    if len(sizes) < 3 * tenth:
+        raise ValueError(f"{len(sizes)} samples are too few for a growth")
+    early = statistics.median(sizes[tenth : 2 * tenth])
+    return 100.0 * (statistics.median(sizes[-tenth:]) - early) / early
 
 
-def _without_camera(run: RosRun, length: float) -> tuple[Samples, list[Figure]]:
+def _without_camera(run: RosRun, length: float) -> list[Figure]:
     launched = launch_course(run, *FAST)
     file = run.log_folder / "clock.txt"
-    probe = run.probe("clock", str(file), str(CLOCK_PERIOD_NS))
+    probe = run.probe("clock", str(file))
     circle = send_circle(run)
     simulator.unpause()
-    samples = _sample(run, length)
+    growth = _growth("no_camera", run, length)
     simulator.pause()
     run.pause(CLOCK_WAIT)
-    ((_, last_ns, off_ns),) = read_lines(file)
-    behind = simulator.simulated_time() - last_ns * 1e-9
+    times = np.ravel(read_lines(file))
+    behind = simulator.simulated_time() - 1e-9 * times[-1]
     run.stop(circle, probe, launched)
-    return samples, [
-        figure("clock.off_whole_periods", "ns", [off_ns]),
-        figure("clock.behind_ticks", "ms", [1e3 * behind]),
-    ]
+    return [growth, figure("clock.off_whole_periods", "ns", [off_whole_periods(times)]),
+            figure("clock.behind_ticks", "ms", [1e3 * behind])]
 
 
-def _with_camera(run: RosRun, length: float) -> Samples:
-    follower = Follower(run, SIZE, *LOCKSTEP)
-    follower.unpause()
-    samples = _sample(run, length)
-    follower.end()
-    return samples
+def off_whole_periods(times: np.ndarray) -> float:
+    """The worst distance (ns) of a time of /clock from a whole number of its periods."""
+    off = times % CLOCK_PERIOD_NS
+    return float(np.minimum(off, CLOCK_PERIOD_NS - off).max())
 
 
-def _sample(run: RosRun, length: float) -> Samples:
-    """The simulator's memory at even steps of simulated time, until so much has passed."""
+def _growth(name: str, run: RosRun, length: float) -> Figure:
+    """Of the simulator's memory at even steps of simulated time, until so much has passed."""
     begin = simulator.simulated_time()
     samples, reported_at = [], time.monotonic()
     while (passed := simulator.simulated_time() - begin) < length:
         if passed >= len(samples) * length / LOOKS:
-            samples.append((passed, memory(SIMULATOR)))
+            samples.append(memory(SIMULATOR))
         if time.monotonic() - reported_at > SAY_PERIOD:
             reported_at = time.monotonic()
             say(f"  {passed:.0f} of {length:.0f} simulated s")
         run.pause(0.1)
-    return samples
-
-
-def _figures(name: str, samples: Samples) -> list[Figure]:
-    megabytes = [size / 1e6 for _, size in samples]
-    return [
-        figure(f"{name}.growth", "%", [growth_percent(samples)]),
-        figure(f"{name}.memory", "MB", megabytes),
-    ]
+    return figure(f"{name}.growth", "%", [growth_percent(samples)])

@@ -17,15 +17,7 @@ import numpy as np
 
 from run_session import simulator
 from sim_bench.figures import Figure, figure
-from sim_bench.follower import (
-    FOLLOWER,
-    IMAGES,
-    Follower,
-    Seen,
-    frame_ages,
-    launch_course,
-    real_time_factor,
-)
+from sim_bench.follower import FOLLOWER, IMAGES, Follower, Seen, frame_ages, launch_course
 from sim_bench.ros_run import (
     PERCENT,
     PROFILE,
@@ -34,7 +26,6 @@ from sim_bench.ros_run import (
     Window,
     cpu_figures,
     marked_lap,
-    read_lines,
     ros_run,
     stage_figures,
     stages,
@@ -57,55 +48,44 @@ def measure(settings: Settings) -> list[Figure]:
     with ros_run(settings, "ros") as run:
         for name, size in SIZES.items():
             say(f"lesson 05 with the camera at {size[0]}x{size[1]}")
-            found += _drive(run, name, size, settings)
+            found += _drive(run, name, size)
         say("a waffle that stands: its 1920x1080 images sent, nobody subscribed, then paused")
-        return found + _rest(run, settings)
+        return found + _rest(run)
 
 
-def _drive(run: RosRun, name: str, size: tuple[int, int], settings: Settings) -> list[Figure]:
+def _drive(run: RosRun, name: str, size: tuple[int, int]) -> list[Figure]:
     follower = Follower(run, size, PROFILE)
-    follower.wait_until_driving()
-    run.pause(WARM_UP)
-    windows = run.windows(settings.runs(WINDOWS[name]), settings.seconds(WINDOW))
+    windows = run.windows(WINDOWS[name], WINDOW, WARM_UP)
     return [*drive_figures(name, follower.end(), windows),
             *stage_figures(name, stages(follower.launched.log, turn="send"))]
 
 
 def drive_figures(name: str, seen: Seen, windows: list[Window]) -> list[Figure]:
     """The figures of these windows."""
-    inside = [seen.between(window.start, window.end) for window in windows]
-    frames = [len(part.frames) / (window.end - window.start)
-              for part, window in zip(inside, windows)]
-    ages = [[1e3 * age for age in frame_ages(part.frames, seen.clock)] for part in inside]
-    slow = [float(np.percentile(each, 95, method="inverted_cdf")) for each in ages]
-    took = [1e3 * np.median(part.frames[:, 2]) for part in inside]
+    inside = [seen.frames_between(window.start, window.end) for window in windows]
+    rates = [len(frames) / (window.end - window.start) for frames, window in zip(inside, windows)]
+    ages = [1e3 * statistics.median(frame_ages(frames, seen.clock)) for frames in inside]
+    took = [1e3 * np.median(frames[:, 2]) for frames in inside]
     cores = len(os.sched_getaffinity(0))
     spare = [cores - sum(window.cpu.values()) / 100 for window in windows]
     return [
-        figure(f"{name}.frames", "frames/s", frames),
-        figure(f"{name}.real_time_factor", "x", [real_time_factor(part.clock) for part in inside]),
-        figure(f"{name}.frame_age", "ms", map(statistics.median, ages)),
-        figure(f"{name}.frame_age_p95", "ms", slow),
+        figure(f"{name}.frames", "frames/s", rates),
+        figure(f"{name}.real_time_factor", "x", [window.factor for window in windows]),
+        figure(f"{name}.frame_age", "ms", ages),
         figure(f"{name}.callback", "ms", took),
         *cpu_figures(name, windows, always=(SIMULATOR, FOLLOWER)),
         figure(f"{name}.spare", "cores", spare),
     ]
 
 
-def _rest(run: RosRun, settings: Settings) -> list[Figure]:
+def _rest(run: RosRun) -> list[Figure]:
     """The simulator's processor time while the waffle stands: heard, alone, and paused."""
     launched = launch_course(run)
-    file = run.log_folder / "standing.txt"
-    listener = run.probe("listener", str(file), IMAGES)
-    run.wait(lambda: any(count for (count,) in read_lines(file)), "an image")
-    found = []
+    listener, found = run.listen(IMAGES), []
     for name in ("standing", "idle", "paused"):
-        run.pause(REST_WARM_UP)
-        windows = run.windows(settings.runs(REST_WINDOWS), settings.seconds(REST_WINDOW))
-        found.append(figure(f"{name}.cpu.{SIMULATOR}", PERCENT,
-                            [window.cpu.get(SIMULATOR, 0.0) for window in windows]))
-        found.append(figure(f"{name}.real_time_factor", "x",
-                            [window.factor for window in windows]))
+        found.append(figure(f"{name}.cpu.{SIMULATOR}", PERCENT, [
+            window.cpu.get(SIMULATOR, 0.0)
+            for window in run.windows(REST_WINDOWS, REST_WINDOW, REST_WARM_UP)]))
         if name == "standing":
             run.stop(listener)
         else:

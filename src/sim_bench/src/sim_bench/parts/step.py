@@ -2,10 +2,9 @@
 
 The course with its waffle, standing still and driving a circle. Blocks of bare `stepSimulation` and
 of `World.step` take turns; wheel motors keep their last command, so that the engine has the
-same to do in both. A world in which nothing moves for a while leaves the engine out: that is no
-full step, and is measured apart, as `resting`, without a ratio. A force of nothing before each
-block keeps the standing waffle's world awake, and a ratio that only a step without the engine could
-have is an error.
+same to do in both. A world in which nothing moves for a while leaves the engine out: a force of
+nothing before each block keeps the standing waffle's world awake, and a ratio that only a step
+without the engine could have is an error.
 """
 
 from __future__ import annotations
@@ -24,7 +23,6 @@ from sim_bench.settings import Settings
 
 RUNS = 11
 BLOCK, BLOCKS = 200, 5  # steps between two nudges (too few to fall asleep); blocks of a run
-STEPS_TO_REST = 2000  # more than it takes to fall asleep
 SPEED, YAW_RATE = 0.15, 0.3  # m/s, rad/s: a circle of 0.5 m radius
 DRIVE_PERIOD, DRIVE_STEPS = 1 / 30, 33  # s and steps between updates of the waffle's drive
 MOST_CLIENTS = 64
@@ -35,9 +33,6 @@ def measure(settings: Settings) -> list[Figure]:
     """Microseconds a step of either kind, and how many times the bare one ours takes."""
     course, waffle, bare = _open()
     found = _compare("standing", course, waffle, bare, settings)
-    course.world.step(STEPS_TO_REST)
-    resting = [1e6 * _timed(course.world.step, 1000) for _ in range(settings.runs(RUNS))]
-    found.append(figure("step.ours.resting", "us", resting))
     _drive_a_circle(course, waffle)
     found += _compare("driving", course, waffle, bare, settings)
     course.close()

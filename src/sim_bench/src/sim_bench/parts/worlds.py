@@ -20,7 +20,6 @@ from sim_bench.ros_run import (
     RosRun,
     Window,
     cpu_figures,
-    read_lines,
     ros_run,
     stage_figures,
     stages,
@@ -48,7 +47,7 @@ def measure(settings: Settings) -> list[Figure]:
     for name, make in WORLDS.items():
         say(name)
         with ros_run(settings, f"worlds/{name}") as run:
-            windows, log = _at_work(run, make(run.log_folder), settings)
+            windows, log = _at_work(run, make(run.log_folder))
         work = stages(log, turn="draw")
         found += [figure(f"real_time_factor.{name}", "x", [window.factor for window in windows]),
                   *stage_figures(name, work), *cpu_figures(name, windows)]
@@ -60,19 +59,11 @@ def measure(settings: Settings) -> list[Figure]:
     return found
 
 
-def _at_work(run: RosRun, world: MadeWorld, settings: Settings) -> tuple[list[Window], Path]:
+def _at_work(run: RosRun, world: MadeWorld) -> tuple[list[Window], Path]:
     """What was measured, and the log of what the simulator said meanwhile."""
     launched = run.launch_world(PROFILE, f"world_name:={world.file}")
     if world.topics:
-        heard = run.log_folder / "heard.txt"
-        run.probe("listener", str(heard), *world.topics)
-        run.wait(lambda: _all_heard(heard, len(world.topics)), "all sensors")
-    run.pause(settings.seconds(SETTLING))
-    windows = run.windows(settings.runs(RUNS), settings.seconds(WINDOW))
+        run.listen(*world.topics)
+    windows = run.windows(RUNS, WINDOW, SETTLING)
     run.stop(launched)
     return windows, launched.log
-
-
-def _all_heard(file: Path, topics: int) -> bool:
-    lines = read_lines(file)
-    return len(lines) == topics and all(messages > 0 for (messages,) in lines)
