@@ -94,15 +94,13 @@ def test_the_camera_keeps_its_proportions(size_px, view_px):
 PAGE = np.zeros((360, 640, 3), np.uint8)
 
 
-@pytest.mark.parametrize("make", [evaluation.film.FfmpegEncoder, evaluation.film.OpenCvEncoder])
-def test_a_full_disk_is_said(tmp_path, make):
+def test_a_full_disk_is_said(tmp_path):
     path = tmp_path / "run.mp4"
     path.symlink_to("/dev/full")
-    encoder = make(path, 640, 360, 10)
+    encoder = evaluation.film.FfmpegEncoder(path, 640, 360, 10)
     for _ in range(20):
         encoder.write(PAGE)
-    said = encoder.close()
-    assert "No space left" in said or "is the disk full?" in said
+    assert "No space left" in encoder.close()
 
 
 def test_a_film_has_its_name_when_it_is_whole(tmp_path):

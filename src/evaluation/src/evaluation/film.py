@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 import select
-import shutil
 import subprocess
 import tempfile
 import threading
@@ -87,29 +86,6 @@ class FfmpegEncoder:
         return f"ffmpeg: {self._said.readline().decode(errors='replace').strip() or 'it failed'}"
 
 
-class OpenCvEncoder:
-    """MPEG-4 by OpenCV itself, if there is no ffmpeg."""
-
-    codec = "MPEG-4 by OpenCV"
-
-    def __init__(self, path: Path, width: int, height: int, rate_hz: int):
-        self._path = path
-        code = cv2.VideoWriter_fourcc(*"mp4v")
-        self._writer = cv2.VideoWriter(str(path), code, rate_hz, (width, height))
-
-    def write(self, page: np.ndarray) -> None:
-        self._writer.write(page)
-
-    def close(self) -> str:
-        """Finish the file; returns why it is incomplete, or ""."""
-        self._writer.release()
-        whole = cv2.VideoCapture(str(self._path)).isOpened()
-        return "" if whole else "OpenCV could not write it: is the disk full?"
-
-    def kill(self) -> None:
-        """Nothing to do: there is no process."""
-
-
 FILM_RATE_HZ = 10
 # s, simulated, between two frames: videos run at 2 times the speed, of fast drives at 8
 FILM_PERIOD, FAST_FILM_PERIOD = 0.2, 0.8
@@ -126,13 +102,13 @@ class FilmFile:
         # An incomplete file has a name that says so, whichever process is killed.
         self._path, self._part = path, path.with_suffix(f".part{path.suffix}")
         self._ended, self._lock = threading.Event(), threading.Lock()
-        self._writer: FfmpegEncoder | OpenCvEncoder | None = None
+        self._writer: FfmpegEncoder | None = None
         self.codec = ""  # set with the first frame
 
     @property
     def process_id(self) -> int | None:
-        """Process id of the encoder, if it is a process."""
-        return getattr(self._writer, "process_id", None)
+        """Process id of the encoder, once it was started."""
+        return self._writer.process_id if self._writer else None
 
     def start(self) -> None:
         """Begin to record."""
@@ -165,8 +141,7 @@ class FilmFile:
                 return
             if self._writer is None:
                 self._path.unlink(missing_ok=True)
-                make = FfmpegEncoder if shutil.which("ffmpeg") else OpenCvEncoder
-                self._writer = make(self._part, *page.shape[1::-1], FILM_RATE_HZ)
+                self._writer = FfmpegEncoder(self._part, *page.shape[1::-1], FILM_RATE_HZ)
             for _ in range(times):
                 self._writer.write(page)
                 self.codec = self._writer.codec

@@ -9,7 +9,6 @@ import logging
 import os
 import pickle
 import re
-import select
 import shutil
 import signal
 import subprocess
@@ -31,7 +30,7 @@ from evaluation.case_process import ORDER, OUT, RESULT, Order
 from evaluation.trial import Case, Trial
 from run_session.failure import RunError
 from run_session.launch import describe_exit
-from run_session.processes import end_with_parent, read_log
+from run_session.processes import read_log, start_program
 
 LOOK_PERIOD = 0.5  # s, wall, between two checks whether the case is still wanted
 END_TIME = 10.0  # s, wall, for an unwanted case to end; its session takes 3 s at most
@@ -69,22 +68,15 @@ def run_case(order: bytes, out: str) -> tuple[bytes, bytes]:
 
 def _run_process(folder: str, log: Path, wanted: Callable[[], bool]) -> int:
     """Run the case's process; returns its exit code."""
-    with log.open("wb") as output:
-        process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "evaluation.case_process", folder],
-            env={**os.environ, "ROS_HOSTNAME": "localhost"}, stdin=subprocess.DEVNULL,
-            stdout=output, stderr=subprocess.STDOUT, start_new_session=True,
-            preexec_fn=end_with_parent(os.getpid()))
-    ended = os.pidfd_open(process.pid)
-    try:
-        while not select.select([ended], [], [], LOOK_PERIOD)[0]:
-            if not wanted():
-                process.send_signal(signal.SIGINT)
-                select.select([ended], [], [], END_TIME)
-                process.kill()
-                break
-    finally:
-        os.close(ended)
+    process = start_program([sys.executable, "-P", "-m", "evaluation.case_process", folder],
+                            {**os.environ, "ROS_HOSTNAME": "localhost"}, log)
+    with contextlib.suppress(subprocess.TimeoutExpired):
+        while wanted():
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                return process.wait(LOOK_PERIOD)
+        process.send_signal(signal.SIGINT)
+        return process.wait(END_TIME)
+    process.kill()
     return process.wait()
 
 

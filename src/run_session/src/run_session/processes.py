@@ -59,18 +59,8 @@ class Family:
     def start(
         self, name: str, command: list[str], environment: Mapping[str, str], log: Path
     ) -> Child:
-        """Start a program in a session of its own; the kernel signals it to end if we die first."""
-        with log.open("wb") as output:
-            process = subprocess.Popen(
-                command,
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-                preexec_fn=end_with_parent(os.getpid()),
-            )
-        self._children.append(Child(name, process, log))
+        """Start a program as `start_program` does."""
+        self._children.append(Child(name, start_program(command, environment, log), log))
         return self._children[-1]
 
     def __enter__(self) -> Family:
@@ -142,6 +132,16 @@ class Family:
             else:
                 _collect(each.pid)
         return living
+
+
+def start_program(command: list[str], environment: Mapping[str, str], log: Path
+                  ) -> subprocess.Popen:
+    """Start a program in a session of its own; the kernel signals it to end if we die first."""
+    with log.open("wb") as output:
+        return subprocess.Popen(
+            command, env=environment, stdin=subprocess.DEVNULL, stdout=output,
+            stderr=subprocess.STDOUT, start_new_session=True,
+            preexec_fn=end_with_parent(os.getpid()))
 
 
 def strip_terminal_codes(text: str) -> str:
