@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from ai_robot_tracking.detection.decoding import Detections
 from ai_robot_tracking.detection.model import Model
 from ai_robot_tracking.training import CLASSES
 from ai_robot_tracking.training.dataset import TEST_FIRST
 from ai_robot_tracking.training.drawing import draw_picture
 from ai_robot_tracking.training.scoring import (
-    Found,
     Judged,
     Truth,
     average_precision,
@@ -30,8 +30,8 @@ HERE, THERE, AWAY = (0, 0, 10, 10), (20, 0, 40, 10), (60, 60, 80, 80)
 
 def found(*boxes, scores=None, classes=None):
     scores = scores or [0.9 - 0.1 * number for number in range(len(boxes))]
-    return Found(np.array(boxes, float).reshape(-1, 4), np.array(scores, float),
-                 np.array(classes or [0] * len(boxes), int))
+    return Detections(np.array(boxes, float).reshape(-1, 4), np.array(scores, float),
+                      np.array(classes or [0] * len(boxes), int))
 
 
 def truth(*boxes, classes=None, counts=None):

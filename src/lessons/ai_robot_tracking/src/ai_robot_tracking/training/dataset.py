@@ -74,27 +74,23 @@ def read_sets(folder: Path, name: str, most: int | None = None) -> PictureSet:
 
     FileNotFoundError if there are none, OSError if one is damaged.
     """
-    images, labels, count, first = [], [], 0, None
+    images, labels, firsts, count = [], [], [], 0
     for path in sorted(folder.glob(f"{name}-*.npz")):
         if most is not None and count >= most:
             break
         try:
             with np.load(path) as file:
-                rows = file["labels"].copy()
-                rows[:, PICTURE] += count
                 images.append(file["images"])
-                labels.append(rows)
-                first = int(file["first"]) if first is None else first
+                labels.append(file["labels"] + np.eye(1, 7, PICTURE, dtype=np.float32) * count)
+                firsts.append(int(file["first"]))
         except DAMAGED as error:
             raise OSError(f"{path}: not a set of images; draw it again: {error}") from error
         count += len(images[-1])
-    if first is None:
+    if not images:
         raise FileNotFoundError(f"{folder}: no images {name}-*.npz; draw them first")
-    together = PictureSet(np.concatenate(images), np.concatenate(labels), first)
-    if most is None or most >= count:
-        return together
-    kept = together.labels[together.labels[:, PICTURE] < most]
-    return PictureSet(together.images[:most], kept, first)
+    rows = np.concatenate(labels)
+    kept = count if most is None else most
+    return PictureSet(np.concatenate(images)[:kept], rows[rows[:, PICTURE] < kept], firsts[0])
 
 
 ZOOM = (0.6, 1.7)
@@ -116,15 +112,12 @@ def augmented(
     smaller = math.sqrt(size[1] / image.shape[1])  # between all of it and its original scale
     factor = smaller * math.exp(rng.uniform(*np.log(ZOOM))) if rng.random() < 0.7 else smaller
     if factor != 1 or size != image.shape[:2]:
-        image, labels = _zoomed(rng, np.ascontiguousarray(image), labels, factor, size)
+        image, labels = _zoomed(rng, np.ascontiguousarray(image), labels, factor, *size)
     return _relit(rng, image), labels
 
 
-def _zoomed(
-    rng: np.random.Generator, image: np.ndarray, labels: np.ndarray, factor: float,
-    size: tuple[int, int],
-) -> tuple[np.ndarray, np.ndarray]:
-    height, width = size
+def _zoomed(rng: np.random.Generator, image: np.ndarray, labels: np.ndarray, factor: float,
+            height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
     slack = np.array((width, height)) - np.array(image.shape[1::-1]) * factor
     offset = slack * rng.uniform(0, 1, 2)
     matrix = np.array([[factor, 0, offset[0]], [0, factor, offset[1]]])

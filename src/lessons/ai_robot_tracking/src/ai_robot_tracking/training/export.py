@@ -5,7 +5,6 @@ Weights are stored in half precision; onnxruntime converts them once when it ope
 
 from __future__ import annotations
 
-import copy
 import io
 import warnings
 from pathlib import Path
@@ -14,9 +13,9 @@ import numpy as np
 import onnx
 import onnxruntime
 import torch
+from onnx import numpy_helper
 from torch import nn
-from torch.nn.utils.fusion import fuse_conv_bn_eval
-from torchvision.ops import Conv2dNormActivation, box_convert
+from torchvision.ops import box_convert
 
 from ai_robot_tracking.training import CLASSES, TrainingError
 from ai_robot_tracking.training.dataset import INPUT_HEIGHT, INPUT_WIDTH
@@ -26,39 +25,17 @@ OPSET = 16
 WORST = 0.5  # px, or hundredths of a score: largest allowed difference between torch and ONNX
 
 
-class _Half(nn.Module):
-    """A convolution with its numbers in half precision."""
-
-    def __init__(self, conv: nn.Conv2d):
-        super().__init__()
-        self.conv = conv.half()
-
-    def forward(self, features: torch.Tensor) -> torch.Tensor:
-        conv = self.conv
-        return nn.functional.conv2d(features, conv.weight.float(), conv.bias.float(), conv.stride,
-                                    conv.padding)
-
-
 class _Table(nn.Module):
-    """Boxes as middle and size, px, and scores, of a network whose numbers it halves."""
+    """Boxes as middle and size, px, and scores: (b, 4 + classes, n)."""
 
     def __init__(self, network: Detector):
         super().__init__()
-        self.network = copy.deepcopy(network)
-        for parent in list(self.network.modules()):
-            for name, part in parent.named_children():
-                if isinstance(part, Conv2dNormActivation):
-                    setattr(parent, name,
-                            nn.Sequential(_Half(fuse_conv_bn_eval(part[0], part[1])), part[2]))
-                elif isinstance(part, nn.Conv2d):  # a head
-                    setattr(parent, name, _Half(part))
+        self.network = network
 
     def forward(self, images: torch.Tensor) -> torch.Tensor:
-        return _table(*self.network(images))
-
-
-def _table(boxes: torch.Tensor, logits: torch.Tensor) -> torch.Tensor:
-    return torch.cat([box_convert(boxes, "xyxy", "cxcywh"), logits.sigmoid()], 2).transpose(1, 2)
+        boxes, logits = self.network(images)
+        rows = torch.cat([box_convert(boxes, "xyxy", "cxcywh"), logits.sigmoid()], 2)
+        return rows.transpose(1, 2)
 
 
 @torch.no_grad()
@@ -68,14 +45,15 @@ def export(network: Detector, path: Path, metadata: dict[str, str]) -> None:
     TrainingError if it does not compute the same as the network.
     """
     noise = np.random.default_rng(0).random((1, 3, INPUT_HEIGHT, INPUT_WIDTH), np.float32)
-    images = torch.from_numpy(noise)
-    expected = _table(*network(images))[0].numpy()
+    images, table = torch.from_numpy(noise), _Table(network).eval()
+    expected = table(images)[0].numpy()
     file = io.BytesIO()
     with warnings.catch_warnings():  # which the check below makes needless
         warnings.simplefilter("ignore")
-        torch.onnx.export(_Table(network).eval(), images, file, input_names=["images"],
+        torch.onnx.export(table, images, file, input_names=["images"],
                           output_names=["output0"], opset_version=OPSET, do_constant_folding=False)
     model = onnx.load_from_string(file.getvalue())
+    _halve(model.graph)
     onnx.helper.set_model_props(model, {
         "names": repr(dict(enumerate(CLASSES))), "imgsz": repr([INPUT_HEIGHT, INPUT_WIDTH]),
         **metadata})
@@ -87,3 +65,13 @@ def export(network: Detector, path: Path, metadata: dict[str, str]) -> None:
     if not off.max() < WORST:
         raise TrainingError(f"{path}: up to {off.max():.3g} px or hundredths off what torch "
                             "computes")
+
+
+def _halve(graph: onnx.GraphProto) -> None:
+    """Store the weights in half precision, each with a node that makes it whole again."""
+    for weight in graph.initializer:
+        half = numpy_helper.to_array(weight).astype(np.float16)
+        node = onnx.helper.make_node("Cast", [f"{weight.name}.half"], [weight.name],
+                                     to=onnx.TensorProto.FLOAT)
+        graph.node.insert(0, node)
+        weight.CopyFrom(numpy_helper.from_array(half, f"{weight.name}.half"))

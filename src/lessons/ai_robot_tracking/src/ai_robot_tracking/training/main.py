@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from ai_robot_tracking.training import TrainingError
@@ -49,37 +50,29 @@ def _parser() -> Parser:
     verbs = parser.add_subparsers(required=True, metavar="VERB", parser_class=Parser)
     draw = verbs.add_parser("draw", help="render the training images")
     draw.add_argument("folder", type=Path, help="where to write them: 0.25 MB per image")
-    draw.add_argument("--pictures", type=_count, default=PICTURES, metavar="N")
-    draw.add_argument("--jobs", type=_count, default=1, metavar="N", help="processes at a time (1)")
+    draw.add_argument("--pictures", type=_whole, default=PICTURES, metavar="N")
+    draw.add_argument("--jobs", type=_whole, default=1, metavar="N", help="processes at a time (1)")
     draw.set_defaults(verb=_draw)
     train = verbs.add_parser("train", help="train a network and write it as ONNX")
     train.add_argument("folder", type=Path, help="with the images")
     train.add_argument("model", type=Path, help="the .onnx file to write")
-    train.add_argument("--pictures", type=_count, default=PICTURES, metavar="N",
+    train.add_argument("--pictures", type=_whole, default=PICTURES, metavar="N",
                        help="how many of them to use")
-    train.add_argument("--steps", type=_count, metavar="N", help="instead of the plan's")
-    train.add_argument("--until", type=_count, metavar="N",
+    train.add_argument("--steps", type=_whole, metavar="N", help="instead of the plan's")
+    train.add_argument("--until", type=_whole, metavar="N",
                        help="stop at this step, with the plan's rates unchanged")
-    train.add_argument("--seed", type=_seed, default=0, metavar="N")
+    train.add_argument("--seed", type=partial(_whole, least=0), default=0, metavar="N")
     train.add_argument("--start", type=Path, metavar="FILE.pt",
                        help="continue an earlier training, with full-size images and smaller steps")
     train.set_defaults(verb=_train)
     report = verbs.add_parser("report", help="score a model on worlds that it was not trained on")
     report.add_argument("model", type=Path, help="the .onnx file, next to its -training.json")
-    report.add_argument("--pictures", type=_count, default=TESTED, metavar="N")
+    report.add_argument("--pictures", type=_whole, default=TESTED, metavar="N")
     report.set_defaults(verb=_report)
     return parser
 
 
-def _count(text: str) -> int:
-    return _whole(text, 1)
-
-
-def _seed(text: str) -> int:
-    return _whole(text, 0)
-
-
-def _whole(text: str, least: int) -> int:
+def _whole(text: str, least: int = 1) -> int:
     if not (text.isascii() and text.isdigit()) or not least <= int(text) <= MOST:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from {least} to {MOST}")
     return int(text)

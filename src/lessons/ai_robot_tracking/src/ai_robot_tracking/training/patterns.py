@@ -17,6 +17,11 @@ def any_colour(rng: np.random.Generator, saturated: bool = False) -> tuple[float
     return tuple(float(channel) for channel in colour)
 
 
+def any_red(rng: np.random.Generator) -> tuple[float, float, float]:
+    """A strong red."""
+    return rng.uniform(0.6, 1), rng.uniform(0, 0.2), rng.uniform(0, 0.2)
+
+
 def pattern(rng: np.random.Generator, side_px: int = SIDE_PX) -> np.ndarray:
     """(side, side, 3) uint8 RGB: a kind of surface in two colours, with some grain."""
     kind = rng.choice([_plain, _checks, _stripes, _bricks, _clouds, _shapes, _lane])

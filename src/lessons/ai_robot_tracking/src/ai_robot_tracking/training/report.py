@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import math
 import os
+from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import cv2
@@ -83,38 +85,34 @@ def _head(done: dict) -> list[str]:
 
 
 def _scores(judged: Judged, count: int) -> list[str]:
-    lines = [f"## Score on {count} images of worlds that it never saw", "",
-             f"Seeds {TEST_FIRST} to {TEST_FIRST + count - 1}.", "",
-             f"| class | to be found | AP@0.5 | AP@{STRICT:g} |", "|---|---|---|---|"]
+    rows = []
     for label, name in enumerate(CLASSES):
         total = sum(int(((real.classes == label) & real.counts).sum()) for real in judged.truth)
-        each = [_text(average_precision(judged.found, judged.truth, label, overlap))
-                for overlap in (0.5, STRICT)]
-        lines.append(f"| {name} | {total} | {each[0]} | {each[1]} |")
+        rows.append([name, total, *(
+            _text(average_precision(judged.found, judged.truth, label, overlap))
+            for overlap in (0.5, STRICT))])
     means = [_text(_mean(judged, overlap)) for overlap in (0.5, STRICT)]
-    return [*lines, f"| **mean** | | **{means[0]}** | **{means[1]}** |", ""]
+    return [f"## Score on {count} images of worlds that it never saw", "",
+            f"Seeds {TEST_FIRST} to {TEST_FIRST + count - 1}.", "",
+            *_table(["class", "to be found", "AP@0.5", f"AP@{STRICT:g}"], rows),
+            f"| **mean** | | **{means[0]}** | **{means[1]}** |", ""]
 
 
 def _confusions(judged: Judged) -> list[str]:
-    table = confusion(judged, len(CLASSES))
-    heads = [*CLASSES, "not found"]
-    lines = [f"## Confusion matrix at confidence {CONFIDENCE:g}", "",
-             "| true \\ found | " + " | ".join(heads) + " |", "|---" * (len(heads) + 1) + "|"]
-    for name, row in zip([*CLASSES, "nothing"], table):
-        cells = [str(value) for value in row]
-        if name == "nothing":
-            cells[-1] = ""
-        lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return [*lines, ""]
+    rows = [[name, *row] for name, row in zip([*CLASSES, "nothing"],
+                                              confusion(judged, len(CLASSES)))]
+    rows[-1][-1] = ""
+    return [f"## Confusion matrix at confidence {CONFIDENCE:g}", "",
+            *_table(["true \\ found", *CLASSES, "not found"], rows), ""]
 
 
 def _sizes(judged: Judged) -> list[str]:
-    lines = [f"## Found at confidence {CONFIDENCE:g}, by the height of the box", "",
-             "| px | to be found | found |", "|---|---|---|"]
-    for (total, right), low, high in zip(recall_by_size(judged, SIZES_PX), SIZES_PX, SIZES_PX[1:]):
-        share = f"{100 * right / total:.0f} %" if total else ""
-        lines.append(f"| {low:g} to {math.floor(high)} | {total} | {share} |")
-    return [*lines, ""]
+    rows = [(f"{low:g} to {math.floor(high)}", total,
+             f"{100 * right / total:.0f} %" if total else "")
+            for (total, right), (low, high) in zip(recall_by_size(judged, SIZES_PX),
+                                                   pairwise(SIZES_PX))]
+    return [f"## Found at confidence {CONFIDENCE:g}, by the height of the box", "",
+            *_table(["px", "to be found", "found"], rows), ""]
 
 
 def _speed(model: Model, picture: Picture) -> list[str]:
@@ -129,9 +127,13 @@ def _speed(model: Model, picture: Picture) -> list[str]:
 
 def _curve(curve: list[list[float]]) -> list[str]:
     picked = sorted({round(place) for place in np.linspace(0, len(curve) - 1, CURVE_POINTS)})
-    steps = " | ".join(str(curve[place][0]) for place in picked)
-    losses = " | ".join(f"{curve[place][1]:.2f}" for place in picked)
-    return [f"| step | {steps} |", "|---" * (len(picked) + 1) + "|", f"| loss | {losses} |"]
+    return _table(["step", *(curve[place][0] for place in picked)],
+                  [["loss", *(f"{curve[place][1]:.2f}" for place in picked)]])
+
+
+def _table(heads: Sequence[object], rows: Iterable[Sequence[object]]) -> list[str]:
+    lines = ["| " + " | ".join(map(str, row)) + " |" for row in (heads, *rows)]
+    return [lines[0], "|---" * len(heads) + "|", *lines[1:]]
 
 
 def _mean(judged: Judged, overlap: float) -> float:

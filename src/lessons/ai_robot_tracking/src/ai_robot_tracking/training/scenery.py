@@ -6,12 +6,21 @@ import math
 
 import numpy as np
 
-from ai_robot_tracking.training.patterns import FLOOR_PX, any_colour, pattern
-from ai_robot_tracking.training.things import Images, Thing, ball, box, coloured, plate, post
-from bullet_sim.description import Fog, LightDescription, Plane, SceneDescription
+from ai_robot_tracking.training.patterns import FLOOR_PX, any_colour, any_red, pattern
+from ai_robot_tracking.training.things import (
+    Images,
+    Thing,
+    ball,
+    box,
+    coloured,
+    covered,
+    plane,
+    plate,
+    post,
+)
+from bullet_sim.description import Fog, LightDescription, SceneDescription
 from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Pose
-from bullet_sim.rendering.primitives import primitive_part
 
 WALL_HEIGHT = (0.4, 3.5)  # m
 FLOOR_SIDE = 40.0  # m
@@ -21,11 +30,9 @@ def surroundings(rng: np.random.Generator, room: float, images: Images) -> tuple
     """A floor, and usually walls, about `room` m from the camera at the origin."""
     images["floor"] = pattern(rng, FLOOR_PX)
     side = FLOOR_SIDE if rng.random() < 0.3 else rng.uniform(1.0, 2.5) * room
-    floor = primitive_part(Plane((0.0, 0.0, 1.0), (side, side)))
-    parts = [_on(floor, (1.0, 1.0, 1.0), "floor")]
+    parts = [plane(side, 0.0, coloured((1.0, 1.0, 1.0), texture="floor"))]
     if side < FLOOR_SIDE:
-        far = primitive_part(Plane((0.0, 0.0, 1.0), (FLOOR_SIDE, FLOOR_SIDE)))
-        parts.append(_on(_lowered(far, 0.02), any_colour(rng), None))
+        parts.append(plane(FLOOR_SIDE, -0.02, coloured(any_colour(rng))))
     if rng.random() < 0.75:
         parts += _walls(rng, room, images)
     return tuple(parts)
@@ -73,9 +80,7 @@ def distractor(rng: np.random.Generator, images: Images) -> Thing:
 def _box(rng: np.random.Generator, images: Images) -> Thing:
     size = rng.uniform(0.1, 1.0, 3) * rng.uniform(0.4, 1.8)
     if rng.random() < 0.35:
-        name = f"box {len(images)}"
-        images[name] = pattern(rng)
-        material = coloured((1.0, 1.0, 1.0), texture=name)
+        material = covered(images, "box", pattern(rng))
     else:
         material = coloured(any_colour(rng, saturated=rng.random() < 0.5))
     part = box(tuple(size.tolist()), (0, 0, size[2] / 2), material)
@@ -116,7 +121,7 @@ def _other_sign(rng: np.random.Generator, images: Images) -> Thing:
     radius = rng.uniform(0.08, 0.45)
     high = radius * rng.uniform(2.0, 7.0)
     sides = int(rng.choice([3, 4, 32]))
-    red = (rng.uniform(0.6, 1), rng.uniform(0, 0.2), rng.uniform(0, 0.2))
+    red = any_red(rng)
     colour = red if rng.random() < 0.4 else any_colour(rng, saturated=True)
     grey = coloured((0.5, 0.5, 0.52))
     own = list(plate(sides, radius, (0.12 * radius, 0, high), coloured(colour), grey))
@@ -155,23 +160,11 @@ def _walls(rng: np.random.Generator, room: float, images: Images) -> list[MeshPa
 
 
 def _picture(rng, images: Images, away: float, yaw: float, high: float) -> MeshPart:
-    name = f"picture {len(images)}"
-    images[name] = pattern(rng)
+    picture = covered(images, "picture", pattern(rng))
     aside, size = rng.uniform(-1, 1) * away, rng.uniform(0.2, 0.9) * high
     on_wall = Pose.from_xyz_rpy((0, 0, 0), (0, 0, yaw))
     at = on_wall.transform((away - 0.06, aside, high * 0.5))
-    return box((0.02, size * rng.uniform(0.6, 1.8), size), at,
-               coloured((1.0, 1.0, 1.0), texture=name), (0, 0, yaw))
-
-
-def _on(part: MeshPart, colour: tuple[float, float, float], texture: str | None) -> MeshPart:
-    return MeshPart(part.vertices, part.normals, part.uv, part.faces,
-                    coloured(colour, texture=texture))
-
-
-def _lowered(part: MeshPart, by: float) -> MeshPart:
-    vertices = part.vertices - np.array((0, 0, by), np.float32)
-    return MeshPart(vertices, part.normals, part.uv, part.faces, part.material)
+    return box((0.02, size * rng.uniform(0.6, 1.8), size), at, picture, (0, 0, yaw))
 
 
 def _rgba(rgb: np.ndarray) -> tuple[float, float, float, float]:

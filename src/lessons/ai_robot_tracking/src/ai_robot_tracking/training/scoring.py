@@ -13,27 +13,20 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
+from ai_robot_tracking.detection.decoding import Detections
 from ai_robot_tracking.detection.model import Model
 from ai_robot_tracking.training.drawing import Picture
-
-
-@dataclass(frozen=True)
-class Found:
-    """What a detector found in one image."""
-
-    boxes: np.ndarray  # (n, 4) left, top, right, bottom, px
-    scores: np.ndarray  # (n,) 0..1
-    classes: np.ndarray  # (n,) int
 
 
 @dataclass(frozen=True)
 class Truth:
     """The true boxes of one image."""
 
-    boxes: np.ndarray  # (n, 4) as above
+    boxes: np.ndarray  # (n, 4) left, top, right, bottom, px
     classes: np.ndarray  # (n,) int
     counts: np.ndarray  # (n,) bool; false: neither missed nor a false detection
 
@@ -48,7 +41,7 @@ def overlaps(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 
 def average_precision(
-    found: Sequence[Found], truth: Sequence[Truth], label: int, overlap: float = 0.5
+    found: Sequence[Detections], truth: Sequence[Truth], label: int, overlap: float = 0.5
 ) -> float:
     """Average precision of one class over all images, 0..1; nan if it has no boxes."""
     scores, right, total = [], [], 0
@@ -61,12 +54,14 @@ def average_precision(
         right.append(hits[hits >= 0])
     if total == 0:
         return float("nan")
-    order = np.argsort(-np.concatenate(scores), kind="stable")
-    return _area(np.concatenate(right)[order], total)
+    hits = np.concatenate(right)[np.argsort(-np.concatenate(scores), kind="stable")]
+    precision = np.cumsum(hits) / np.arange(1, len(hits) + 1)
+    falling = np.maximum.accumulate(precision[::-1])[::-1]
+    return float((falling * hits).sum() / total)
 
 
 def mean_average_precision(
-    found: Sequence[Found], truth: Sequence[Truth], classes: int, overlap: float = 0.5
+    found: Sequence[Detections], truth: Sequence[Truth], classes: int, overlap: float = 0.5
 ) -> float:
     """The mean over the classes that have boxes."""
     each = [average_precision(found, truth, label, overlap) for label in range(classes)]
@@ -89,16 +84,6 @@ def _hits(boxes: np.ndarray, scores: np.ndarray, real: np.ndarray, counts: np.nd
     return hits
 
 
-def _area(right: np.ndarray, total: int) -> float:
-    """The area under precision over recall, for hits (1) and misses (0) in order of score."""
-    if not len(right):
-        return 0.0
-    hits = np.cumsum(right)
-    precision = hits / np.arange(1, len(right) + 1)
-    falling = np.maximum.accumulate(precision[::-1])[::-1]
-    return float((falling * right).sum() / total)
-
-
 LEAST = 0.01  # lowest score of counted boxes, so that the curve is complete
 CONFIDENCE, IOU = 0.25, 0.45  # the node's, for the confusion matrix
 SPEED_RUNS = 40
@@ -108,7 +93,7 @@ SPEED_RUNS = 40
 class Judged:
     """What a model found in images, and their true boxes."""
 
-    found: list[Found]
+    found: list[Detections]
     truth: list[Truth]
 
 
@@ -116,8 +101,7 @@ def judge(model: Model, pictures: Iterable[Picture]) -> Judged:
     """Run the model on all images as the node does."""
     found, truth = [], []
     for picture in pictures:
-        seen = model.detect(picture.rgb, LEAST, IOU)
-        found.append(Found(seen.boxes, seen.scores, seen.classes))
+        found.append(model.detect(picture.rgb, LEAST, IOU))
         labels = picture.labels
         truth.append(Truth(labels[:, 1:5].astype(float), labels[:, 0].astype(int),
                            labels[:, 5] > 0))
@@ -151,19 +135,16 @@ def confusion(judged: Judged, classes: int) -> np.ndarray:
 
 def recall_by_size(judged: Judged, edges: tuple[float, ...]) -> list[tuple[int, int]]:
     """For each range of box heights (px): how many objects there are, and how many were found."""
-    tallies = [[0, 0] for _ in edges[:-1]]
+    heights, hits = [], []
     for seen, real in zip(judged.found, judged.truth):
         sure = seen.scores >= CONFIDENCE
-        common = overlaps(seen.boxes[sure], real.boxes)
         same = seen.classes[sure][:, None] == real.classes[None]
-        hit = ((common >= 0.5) & same).any(axis=0)
-        for index in np.flatnonzero(real.counts):
-            height = real.boxes[index, 3] - real.boxes[index, 1]
-            place = int(np.searchsorted(edges, height, side="right")) - 1
-            if 0 <= place < len(tallies):
-                tallies[place][0] += 1
-                tallies[place][1] += int(hit[index])
-    return [(total, right) for total, right in tallies]
+        hit = ((overlaps(seen.boxes[sure], real.boxes) >= 0.5) & same).any(axis=0)
+        heights.append((real.boxes[:, 3] - real.boxes[:, 1])[real.counts])
+        hits.append(hit[real.counts])
+    height, hit = np.concatenate(heights), np.concatenate(hits)
+    within = [(low <= height) & (height < high) for low, high in pairwise(edges)]
+    return [(int(one.sum()), int(hit[one].sum())) for one in within]
 
 
 def milliseconds(model: Model, picture: np.ndarray) -> tuple[float, float]:

@@ -14,15 +14,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from ai_robot_tracking.training.patterns import any_colour, pattern, stop_face
-from bullet_sim.description import Box, Cylinder, Material, Sphere
-from bullet_sim.meshes.part import MeshPart, flat_shaded
+from ai_robot_tracking.training.patterns import any_colour, any_red, pattern, stop_face
+from bullet_sim.description import Box, Cylinder, Material, Plane, Sphere
+from bullet_sim.meshes.part import MeshPart, flat_shaded, grid_faces
 from bullet_sim.pose import Pose, Vector3
 from bullet_sim.rendering.primitives import primitive_part
 from bullet_sim.rendering.scene import LinkShape
 
 ROUND_SIDES = 32
 Rgb = tuple[float, float, float]  # each 0..1
+Images = dict[str, np.ndarray]  # textures by name, as in scenes
 
 
 @dataclass(frozen=True)
@@ -43,9 +44,22 @@ def coloured(colour: Rgb, glow: float = 0.0, texture: str | None = None) -> Mate
     return Material(ambient=rgba, diffuse=rgba, emissive=glowing, texture=texture)
 
 
+def covered(images: Images, name: str, image: np.ndarray) -> Material:
+    """A surface that shows this image, which is added to `images`."""
+    name = f"{name} {len(images)}"
+    images[name] = image
+    return coloured((1.0, 1.0, 1.0), texture=name)
+
+
 def box(size: Vector3, at: Vector3, material: Material, rpy: Vector3 = (0, 0, 0)) -> MeshPart:
     """A cuboid with its centre at `at` (m), rotated by roll, pitch and yaw (rad)."""
     return _placed(primitive_part(Box(size)), at, rpy, material)
+
+
+def plane(side: float, height: float, material: Material) -> MeshPart:
+    """A square that faces up, at a height (m)."""
+    return _placed(primitive_part(Plane((0.0, 0.0, 1.0), (side, side))), (0.0, 0.0, height),
+                   (0, 0, 0), material)
 
 
 def bar(
@@ -72,13 +86,9 @@ def frustum(low: float, high: float, bottom: float, top: float, material: Materi
              for radius, height in ((low, bottom), (high, top))]
     slope = (low - high) / (top - bottom)
     normals = np.column_stack([circle, np.full(len(turn), slope)]) / math.hypot(1, slope)
-    column = np.arange(ROUND_SIDES)
-    above = column + len(turn)
-    faces = np.concatenate([np.stack([column, column + 1, above + 1], 1),
-                            np.stack([column, above + 1, above], 1)])
     return MeshPart(np.concatenate(rings).astype(np.float32),
                     np.concatenate([normals, normals]).astype(np.float32),
-                    None, faces.astype(np.uint32), material)
+                    None, grid_faces(2, len(turn)).astype(np.uint32), material)
 
 
 def plate(sides: int, radius: float, at: Vector3, front: Material, back: Material
@@ -106,16 +116,11 @@ def link_shape(parts: tuple[MeshPart, ...]) -> LinkShape:
 
 def _placed(part: MeshPart, at: Vector3, rpy: Vector3, material: Material) -> MeshPart:
     matrix = Pose.from_xyz_rpy(at, rpy).matrix()
-    return MeshPart(
-        vertices=(part.vertices @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32),
-        normals=(part.normals @ matrix[:3, :3].T).astype(np.float32),
-        uv=part.uv,
-        faces=part.faces,
-        material=material,
-    )
+    turn = matrix[:3, :3].T
+    return replace(part, vertices=(part.vertices @ turn + matrix[:3, 3]).astype(np.float32),
+                   normals=(part.normals @ turn).astype(np.float32), material=material)
 
 
-Images = dict[str, np.ndarray]  # textures by name, as in scenes
 SKIN = ((0.96, 0.80, 0.69), (0.87, 0.67, 0.53), (0.72, 0.50, 0.36), (0.45, 0.29, 0.20),
         (0.30, 0.19, 0.13))
 HAIR = ((0.08, 0.06, 0.05), (0.25, 0.15, 0.08), (0.55, 0.40, 0.18), (0.6, 0.6, 0.6))
@@ -184,11 +189,9 @@ def cylinder(rng: np.random.Generator, images: Images) -> Thing:
     radius = rng.uniform(0.05, 0.45)
     length = min(radius * rng.uniform(1.2, 6.0), 1.9)
     if rng.random() < 0.1:
-        name = f"cylinder {len(images)}"
-        images[name] = pattern(rng)
-        material = coloured((1.0, 1.0, 1.0), texture=name)
+        material = covered(images, "cylinder", pattern(rng))
     elif rng.random() < 0.35:
-        material = coloured((rng.uniform(0.6, 1), rng.uniform(0, 0.2), rng.uniform(0, 0.2)))
+        material = coloured(any_red(rng))
     else:
         material = coloured(any_colour(rng, saturated=rng.random() < 0.7))
     if rng.random() < 0.94:
@@ -225,9 +228,7 @@ def stop_sign(rng: np.random.Generator, images: Images) -> Thing:
     """A red octagon with its word, on a post; the post is not boxed."""
     radius = rng.uniform(0.2, 0.42) if rng.random() < 0.7 else rng.uniform(0.04, 0.2)
     high = radius * rng.uniform(2.0, 7.5)
-    name = f"stop {len(images)}"
-    images[name] = stop_face(rng)
-    front = coloured((1.0, 1.0, 1.0), texture=name)
+    front = covered(images, "stop", stop_face(rng))
     grey = coloured((0.5, 0.5, 0.52))
     own = plate(8, radius, (0.12 * radius, 0, high), front, grey)
     return Thing("stop sign", own, (post(rng, radius, high),), Pose(), radius)

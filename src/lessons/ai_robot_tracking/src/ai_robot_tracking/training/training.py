@@ -5,15 +5,16 @@ It runs on one thread: the same images and seed give the same bytes."""
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import math
 import pickle
 import platform
 import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
-from itertools import pairwise
+from itertools import chain, islice
 from pathlib import Path
 
 import numpy as np
@@ -83,10 +84,9 @@ def train(pictures: PictureSet, plan: Plan, say: Callable[[Progress], None],
     averaged = AveragedModel(network, avg_fn=_mean(plan.averaging), use_buffers=True)
     optimiser = torch.optim.AdamW(_groups(network, plan.weight_decay), lr=plan.learning_rate)
     rates = LambdaLR(optimiser, lambda step: _rate(step, plan))
-    feed, began, losses = _Feed(pictures, plan), time.monotonic(), []
+    began, losses = time.monotonic(), []
     network.train()
-    for step in range(plan.until):
-        images, truth = feed.batch(step)
+    for step, (images, truth) in enumerate(_batches(pictures, plan), start=1):
         boxes, logits = network(images)
         loss = detection_loss(boxes, logits, cells(*images.shape[2:])[0], truth)
         optimiser.zero_grad(set_to_none=True)
@@ -96,47 +96,34 @@ def train(pictures: PictureSet, plan: Plan, say: Callable[[Progress], None],
         rates.step()
         averaged.update_parameters(network)
         losses.append(loss.item())
-        if (step + 1) % REPORT_STEPS == 0 or step + 1 == plan.until:
-            say(Progress(step + 1, float(np.mean(losses)), time.monotonic() - began))
+        if step % REPORT_STEPS == 0 or step == plan.until:
+            say(Progress(step, float(np.mean(losses)), time.monotonic() - began))
             losses.clear()
     return averaged.module.eval()
 
 
-class _Feed:
-    """Batches in an order that only depends on the seed."""
-
-    def __init__(self, pictures: PictureSet, plan: Plan):
-        self._pictures, self._plan = pictures, plan
-        self._turn, self._shuffled = -1, np.empty(0, int)
-        rows = pictures.labels[:, PICTURE].astype(int)
-        ends = np.searchsorted(rows, np.arange(len(pictures) + 1))
-        self._labels = [pictures.labels[a:b, 1:] for a, b in pairwise(ends)]
-
-    def batch(self, step: int) -> tuple[torch.Tensor, torch.Tensor]:
-        """Images (b, 3, h, w) float 0..1 and truth (b, MOST_BOXES, 6), -1 where there is none."""
-        size, count = self._plan.batch, len(self._pictures)
-        calm = step >= self._plan.steps * (1 - self._plan.calm)
-        shape = SMALL if step < self._plan.steps * self._plan.small else WHOLE
-        images = np.empty((size, *shape, 3), np.uint8)
-        truth = np.full((size, MOST_BOXES, 6), -1, np.float32)
-        for place in range(size):
-            turn, number = divmod(step * size + place, count)
-            rng = np.random.default_rng((self._plan.seed, 2, step, place))
-            index = self._order(turn)[number]
-            image, labels = self._pictures.images[index], self._labels[index]
+def _batches(pictures: PictureSet, plan: Plan) -> Iterator[tuple[torch.Tensor, torch.Tensor]]:
+    """For each step images (b, 3, h, w) float 0..1 and truth (b, MOST_BOXES, 6), -1 where there is
+    none; in an order that only depends on the seed."""
+    count, rows = len(pictures), pictures.labels[:, PICTURE].astype(int)
+    ends = np.searchsorted(rows, np.arange(count + 1))
+    order = chain.from_iterable(np.random.default_rng((plan.seed, 1, turn)).permutation(count)
+                                for turn in itertools.count())
+    for step in range(plan.until):
+        calm = step >= plan.steps * (1 - plan.calm)
+        shape = SMALL if step < plan.steps * plan.small else WHOLE
+        images = np.empty((plan.batch, *shape, 3), np.uint8)
+        truth = np.full((plan.batch, MOST_BOXES, 6), -1, np.float32)
+        for place, index in enumerate(islice(order, plan.batch)):
+            image = pictures.images[index]
+            labels = pictures.labels[ends[index]:ends[index + 1], 1:]
             if not calm:
+                rng = np.random.default_rng((plan.seed, 2, step, place))
                 image, labels = augmented(rng, image, labels, shape)
             images[place] = image
             truth[place, :len(labels)] = labels[:MOST_BOXES]
         pixels = torch.from_numpy(images).permute(0, 3, 1, 2).float() / 255
-        return pixels.contiguous(memory_format=torch.channels_last), torch.from_numpy(truth)
-
-    def _order(self, turn: int) -> np.ndarray:
-        """The order of the images in epoch `turn`."""
-        if self._turn != turn:
-            rng = np.random.default_rng((self._plan.seed, 1, turn))
-            self._turn, self._shuffled = turn, rng.permutation(len(self._pictures))
-        return self._shuffled
+        yield pixels.contiguous(memory_format=torch.channels_last), torch.from_numpy(truth)
 
 
 def _groups(network: Detector, decay: float) -> list[dict]:
@@ -251,9 +238,6 @@ def _digest(drawn: PictureSet) -> str:
 
 def _processor() -> str:
     """The processor's name, and the instruction set that torch uses."""
-    try:
-        told = re.findall(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
-    except OSError:
-        told = []
+    told = re.findall(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
     used = re.findall(r"CPU capability usage: (\S+)", torch.__config__.show())
-    return ", ".join([*(told or [platform.processor() or platform.machine()])[:1], *used])
+    return ", ".join([*told[:1], *used]) or platform.machine()
