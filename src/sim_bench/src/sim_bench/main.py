@@ -58,7 +58,8 @@ def _measure(part: str, settings: Settings) -> PartResult:
         complain(f"bench: part {part}", error)
         figures, failure = (), str(error)
     took = time.monotonic() - began
-    return PartResult(part, figures, took, 100 * (_used_by_others() - others) / took, failure)
+    percent = max(0.0, 100 * (_used_by_others() - others) / took)
+    return PartResult(part, figures, took, percent, failure)
 
 
 def _machine() -> dict:

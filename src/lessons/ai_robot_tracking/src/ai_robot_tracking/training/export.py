@@ -70,6 +70,8 @@ def export(network: Detector, path: Path, metadata: dict[str, str]) -> None:
 def _halve(graph: onnx.GraphProto) -> None:
     """Store the weights in half precision, each with a node that makes it whole again."""
     for weight in graph.initializer:
+        if weight.data_type != onnx.TensorProto.FLOAT:
+            continue
         half = numpy_helper.to_array(weight).astype(np.float16)
         node = onnx.helper.make_node("Cast", [f"{weight.name}.half"], [weight.name],
                                      to=onnx.TensorProto.FLOAT)
