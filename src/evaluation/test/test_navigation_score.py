@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from evaluation.house import Records, load_house
+from evaluation.live import Outcome
 from evaluation.navigate import NavigationRun
 from evaluation.navigate_parts import keep_map, place_for_map, read_map_frame
 from evaluation.navigate_pictures import CLEAR, map_picture
@@ -210,7 +211,7 @@ def test_report_table_and_picture_of_a_run(tmp_path, ground):
     result.map = ground.walls
     result.paths["goals"] = np.array(records.truth)[:, 1:3]
     options = NavigationRun.parse(["--goals", "2", "--seed", "7", "--out", str(tmp_path)])
-    report = json.loads(json.dumps(summarize(options, ("not passed", "why"), result)))
+    report = json.loads(json.dumps(summarize(options, Outcome("not passed", "why"), result)))
     assert report["goals_reached"] == 1 and report["goals_wanted"] == 2 and report["seed"] == 7
     first = report["navigation"]["goals"][0]
     assert first["time_s"] == 20.0 and first["straight_s"] == 11.5

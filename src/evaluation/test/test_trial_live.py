@@ -14,7 +14,6 @@ class FakeDrive(live.LiveDrive):
     """Ends at once; `reports` has what it wrote."""
 
     program, writes = "drive", ("report.json",)
-    was_seen = True
 
     def __init__(self, out):
         super().__init__(Namespace(out=out))
@@ -25,16 +24,13 @@ class FakeDrive(live.LiveDrive):
     def end(self): ...
 
     def watch(self, launched):
-        return "passed", ""
+        return live.Outcome("passed")
 
     def figures(self, outcome, log):
-        return {"outcome": outcome[0]}
+        return {"outcome": outcome.word}
 
     def write(self, report):
         self.reports.append(report)
-        return []
-
-    def faults(self, outcome):
         return []
 
 
@@ -51,8 +47,7 @@ class Ending:
         raise KeyboardInterrupt
 
     def launched(self, *_):
-        return SimpleNamespace(start_roscore=lambda: None, master_uri="",
-                               why_not_callers="", log_folder=self.out)
+        return SimpleNamespace(start_roscore=lambda: None, master_uri="", why_not_callers="")
 
 
 def test_ctrl_c_after_the_drive_does_not_lose_its_report(tmp_path, monkeypatch):

@@ -36,12 +36,12 @@ COLUMNS = (  # heading, key, factor, digits
 )
 
 
-def summarize(drive: LapScorer, outcome: tuple[str, str]) -> dict:
+def summarize(drive: LapScorer, outcome: Outcome) -> dict:
     """The figures of one drive; lengths in m, times in simulated s."""
     times = [lap.time for lap in drive.laps]
     return {
-        "outcome": outcome[0],
-        "why": outcome[1] or None,
+        "outcome": outcome.word,
+        "why": outcome.why or None,
         "laps_wanted": drive.wanted_laps,
         "laps_closed": len(times),
         "lap_times_s": [round(time, 3) for time in times],
@@ -219,7 +219,9 @@ class CourseRun(CarDrive):
                 *self.fast_arguments(), *self.options.launch_args)
 
     def outcome(self) -> Outcome:
-        return self.drive.verdict.value, self.drive.why
+        drive = self.drive
+        return Outcome(drive.verdict.value, drive.why,
+                       () if drive.verdict is Verdict.CLOSED else (drive.why,))
 
     def line(self) -> str:
         drive = self.drive
@@ -228,10 +230,9 @@ class CourseRun(CarDrive):
                 f" | off line {drive.lateral * 100:+.1f} cm"
                 f" | real time x{self.progress.factor:.2f}")
 
-    def faults(self, outcome: Outcome) -> list[str]:
-        return [] if self.drive.verdict is Verdict.CLOSED else [outcome[1]]
-
-    def figures(self, outcome: Outcome, log: list[str]) -> dict:
+    def figures(self, outcome: Outcome, log: list[str]) -> dict | None:
+        if not self.drive.samples:
+            return None
         counted, simulated = self.counted(log, digits=3), self.simulated
         width, height = self.options.camera or (None, None)
         return {

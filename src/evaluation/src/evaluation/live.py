@@ -8,7 +8,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 from node_basics.ending import interruptible
 
@@ -20,9 +20,17 @@ from run_session.failure import RunError
 from run_session.launch import Launched
 from run_session.observer import Fingerprints, Observer, frame_figures
 from run_session.processes import read_log
-from run_session.session import Session, StatusLine, versions
+from run_session.session import LOG, Session, StatusLine, versions
 
-Outcome = tuple[str, str]  # a word, and the reason
+
+class Outcome(NamedTuple):
+    """How a drive ended: in a word, and why; faults, "" for one that the report already names."""
+
+    word: str
+    why: str = ""
+    faults: Sequence[str] = ()
+
+
 # s, wall; an emulated ARM processor takes minutes to start, and seconds for its first image
 STARTUP_TIMEOUT, STUCK_TIMEOUT = 300.0, 60.0
 EARLIER = "earlier"  # a folder in `out`
@@ -92,22 +100,13 @@ class LiveDrive(ABC):
 
     # --- results
 
-    @property
     @abstractmethod
-    def was_seen(self) -> bool:
-        """Whether there is anything to report."""
-
-    @abstractmethod
-    def figures(self, outcome: Outcome, log: list[str]) -> dict:
-        """The figures for report.json; `log` has the simulator's output lines."""
+    def figures(self, outcome: Outcome, log: list[str]) -> dict | None:
+        """The figures for report.json, if there are any; `log`: the simulator's output lines."""
 
     @abstractmethod
     def write(self, report: dict) -> list[str]:
         """Write pictures and report.json; returns the summary lines."""
-
-    @abstractmethod
-    def faults(self, outcome: Outcome) -> list[str]:
-        """Faults, one line each; "" for one that the report already names."""
 
 
 def run_program_of(kind: type[LiveDrive], arguments: Sequence[str]) -> int:
@@ -118,7 +117,7 @@ def run_program_of(kind: type[LiveDrive], arguments: Sequence[str]) -> int:
 def run_live(drive: LiveDrive) -> int:
     """Run from start to end; returns the exit code, or raises the exception that ended it early."""
     _make_room(drive)
-    early, outcome = None, ("ended early", "interrupted")
+    early, outcome = None, Outcome("ended early", "interrupted")
     try:
         with Session(drive.out) as session:
             launched = session.launched(drive.vehicle, drive.driver)
@@ -131,7 +130,7 @@ def run_live(drive: LiveDrive) -> int:
                 drive.bring_up(launched)
                 outcome = drive.watch(launched)
             except (KeyboardInterrupt, RunError) as ended:
-                early, outcome = ended, ("ended early", str(ended) or "interrupted")
+                early, outcome = ended, Outcome("ended early", str(ended) or "interrupted")
             if drive.film is not None:
                 drive.film.stop()
             session.family.spared = drive.film.process_id if drive.film else None
@@ -140,23 +139,25 @@ def run_live(drive: LiveDrive) -> int:
         early = ended
     found = None
     try:
-        if drive.was_seen:
-            found = _report(drive, outcome, launched.log_folder)
+        found = _report(drive, outcome)
     finally:
         with interruptible():
             _finish_film(drive, found)
     if early is not None:
         raise early
-    faults = drive.faults(outcome)
-    for fault in filter(None, faults):
+    for fault in filter(None, outcome.faults):
         print(f"{drive.program}: {fault}", file=sys.stderr)
-    return NOT_PASSED if faults else PASSED
+    return NOT_PASSED if outcome.faults else PASSED
 
 
-def _report(drive: LiveDrive, outcome: Outcome, log_folder: Path) -> dict:
-    """Write and show the report, still without the video, which may fail to finish."""
-    log = [line for path in sorted(log_folder.glob(drive.logs)) for line in read_log(path)]
+def _report(drive: LiveDrive, outcome: Outcome) -> dict | None:
+    """Write and show the report, if there is anything to report, still without the video, which
+    may fail to finish."""
+    logs = sorted((drive.out / LOG).glob(drive.logs))
+    log = [line for path in logs for line in read_log(path)]
     found = drive.figures(outcome, log)
+    if found is None:
+        return None
     found |= {"film": None, "versions": versions(Path(__file__).parent, log)}
     drive.progress.say("\n" + "\n".join(drive.write(found)))
     return found
@@ -265,15 +266,11 @@ class CarDrive(LiveDrive):
         """Count the images up to the last sample, and stop observing."""
         if self._observer is None:
             return
-        if self.was_seen:
+        if self.drive.samples:
             self._frames = self._observer.count(self.drive.samples[-1].time)
             if self.fingerprints:
                 self.sensor_sums = self.fingerprints.sums(self.drive.samples[-1].time)
         self._observer.stop()
-
-    @property
-    def was_seen(self) -> bool:
-        return bool(self.drive.samples)
 
     @property
     def simulated(self) -> float:

@@ -90,22 +90,15 @@ class NavigationRun(LiveDrive):
         self._tell(f"{len(self._goals)} goals: map_server, amcl, move_base")
         visit_goals(Part("goals", *everybody), self.result, str(map_file), self._goals)
         faults = self.result.faults
-        return ("not passed", "; ".join(faults)) if faults else ("passed", "")
+        return Outcome("not passed" if faults else "passed", "; ".join(faults), faults)
 
     def end(self) -> None:
         """Stop observing."""
         if self._watch is not None:
             self._watch.stop()
 
-    @property
-    def was_seen(self) -> bool:
-        return bool(self.result.paths)
-
-    def faults(self, outcome: Outcome) -> list[str]:
-        return self.result.faults
-
-    def figures(self, outcome: Outcome, log: list[str]) -> dict:
-        return summarize(self.options, outcome, self.result)
+    def figures(self, outcome: Outcome, log: list[str]) -> dict | None:
+        return summarize(self.options, outcome, self.result) if self.result.paths else None
 
     def write(self, report: dict) -> list[str]:
         picture = map_picture(self._ground, self.result, *_titles(self.options, self.result))

@@ -14,6 +14,7 @@ import numpy as np
 from terminal_language import heading
 
 from evaluation.house import Records
+from evaluation.live import Outcome
 from evaluation.map_agreement import MapAgreement, map_agreement
 from evaluation.report import cell, table_of
 from evaluation.trajectory_error import trajectory_error
@@ -163,11 +164,11 @@ def _common_faults(part: dict, ways: str, name: str, goal: str) -> list[str]:
     return found
 
 
-def summarize(options: argparse.Namespace, outcome: tuple[str, str], result: Result) -> dict:
+def summarize(options: argparse.Namespace, outcome: Outcome, result: Result) -> dict:
     """All figures."""
     return {
-        "outcome": outcome[0],
-        "why": outcome[1] or None,
+        "outcome": outcome.word,
+        "why": outcome.why or None,
         "seed": options.seed,
         "wanted_real_time_factor": options.real_time_factor,
         "goals_wanted": options.goals,

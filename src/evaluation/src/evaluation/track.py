@@ -276,7 +276,7 @@ class TrackRun(CarDrive):
                 f"yaw:={start.yaw:.6f}", f"seed:={options.seed}", *self.fast_arguments(), *patient)
 
     def outcome(self) -> Outcome:
-        return self.drive.outcome, ""
+        return Outcome(self.drive.outcome, faults=() if self.drive.good else ("",))
 
     def line(self) -> str:
         drive, now = self.drive, self.drive.samples[-1].time
@@ -287,11 +287,10 @@ class TrackRun(CarDrive):
         return (f"simulated {now:.1f} s | {drive.distance:.2f} m | {what}"
                 f" | real time x{self.progress.factor:.2f}")
 
-    def faults(self, outcome: Outcome) -> list[str]:
-        return [] if self.drive.good else [""]
-
-    def figures(self, outcome: Outcome, log: list[str]) -> dict:
+    def figures(self, outcome: Outcome, log: list[str]) -> dict | None:
         options = self.options
+        if not self.drive.samples:
+            return None
         return {"scene": options.scene, "seed": options.seed, "tracker": options.tracker,
                 "fast": options.fast, **summarize(self.drive, self.start),
                 **self.counted(log, digits=2)}

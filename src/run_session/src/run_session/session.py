@@ -117,6 +117,7 @@ def _revision(root: Path) -> str | None:
     return done.stdout.strip()
 
 
+LOG = "log"  # the logs' folder in that for results
 DRIVEN = (0, 1)  # exit codes of a program whose drive took place
 
 
@@ -159,7 +160,7 @@ class Session:
 
         `alone`: in a network namespace of its own; `environment`: further variables.
         """
-        return Launched(self.family, self.out / "log", driver, vehicle, alone, environment or {})
+        return Launched(self.family, self.out / LOG, driver, vehicle, alone, environment or {})
 
     def drive(self, command: list[str], folder: Path, what: str, limit: float,
               environment: Mapping[str, str] | None = None) -> dict:
