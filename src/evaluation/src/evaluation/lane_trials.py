@@ -20,7 +20,7 @@ from evaluation.lap import Bounds, Disturbance, draw
 from evaluation.lap_trial import LapDrive, LapRecord, LapTrial, Outing, Venue
 from evaluation.picture import chart
 from evaluation.report import cell, grouped, table, table_of
-from evaluation.trial import REPORT, Case
+from evaluation.trial import Case
 from run_session.course_file import drivers, load_course
 from run_session.failure import RunError
 from run_session.files import find_package
@@ -122,7 +122,7 @@ def lane_case(method: str, seed: int, kind: str = LAPS) -> Case:
 class LaneDrives(LapTrial):
     """Shared by the trials of one method and the comparison of all."""
 
-    result = LaneDrive
+    result, begins_anew = LaneDrive, True
 
     def outing(self, out: Path, case: Case) -> Outing:
         """With people, poses.txt is written beside the report."""
@@ -154,10 +154,6 @@ class LaneDrives(LapTrial):
             raise RunError(str(error)) from error
         nearest = lane_encounters.nearest_ever(recording)
         return replace(found, nearest_person=round(nearest, 3), encounters=tuple(met))
-
-    def earlier(self, options: argparse.Namespace) -> list[LaneDrive]:
-        """Results so far; it is no error if there are none."""
-        return super().earlier(options) if (options.out / REPORT).exists() else []
 
 
 class LaneTrial(LaneDrives):

@@ -51,6 +51,7 @@ class Trial(ABC):
     good: ClassVar[str]  # what exit code 0 means
     writes: ClassVar[str]  # the contents of the folder for results
     open_ended: ClassVar[bool] = False  # whether the results decide how many cases are needed
+    begins_anew: ClassVar[bool] = False  # whether --resume is no error where nothing was run yet
     shared: ClassVar[Sequence[str]] = ()  # options that are the same for all results in a report
     result: ClassVar[type]  # a dataclass
     listed: ClassVar[str] = "drives"  # the results' key in report.json
@@ -142,6 +143,8 @@ class Trial(ABC):
     def earlier(self, options: argparse.Namespace) -> list[Any]:
         """The results to resume from; RunError if there are none, or shared options differ."""
         path = options.out / REPORT
+        if self.begins_anew and not path.exists():
+            return []
         try:
             values = json.loads(path.read_text(encoding="utf-8"))
             for name, value in values.get("options", {}).items():

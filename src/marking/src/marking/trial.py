@@ -18,7 +18,7 @@ from racecar_description.track.closed_line import load_track
 from evaluation.command_line import Parser
 from evaluation.lap_trial import MODEL_PATH
 from evaluation.report import table
-from evaluation.trial import REPORT, Case, Trial
+from evaluation.trial import Case, Trial
 from marking.bubblewrap import Kind, available, hidden, namespace, shown
 from marking.case_files import COURSES, CaseFile, Scene, make_scene
 from marking.case_runner import BY_TIME
@@ -72,6 +72,7 @@ class MarkingTrial(Trial):
     does = "Mark a folder of submissions; each drives in a sandbox."
     good = "every case could be run"
     writes = "marks.csv, marks.html, report.json and a folder of each student"
+    begins_anew = True
 
     def add_options(self, parser: Parser) -> None:
         parser.add_argument("--submissions", type=Path, metavar="DIR",
@@ -178,10 +179,6 @@ class MarkingTrial(Trial):
     def values(self, results: Sequence[Mark]) -> dict:
         return {"sandbox": self.options.kind.value, "rules_sha256": self.options.rules_sha256,
                 "marks": [dataclasses.asdict(mark) for mark in results]}
-
-    def earlier(self, options: argparse.Namespace) -> list[Mark]:
-        """Results so far; it is no error if there are none."""
-        return super().earlier(options) if (options.out / REPORT).exists() else []
 
     def from_values(self, values: dict) -> list[Mark]:
         if values["rules_sha256"] != self.options.rules_sha256:
