@@ -1,7 +1,7 @@
 """Makes a .test file an item of pytest, and keeps pytest away from the scripts that rostest runs.
 
 Makes the models that come with the simulator, so that tests see their TOML files as they are now,
-and TurtleBot3's worlds if there are none.
+and TurtleBot3's worlds and the packages that are only a name, if there are none.
 """
 
 import os
@@ -26,6 +26,6 @@ from run_tests_files import (  # noqa: F401  hooks
 if "PYTEST_XDIST_WORKER" not in os.environ:  # whose controller has made them
     runpy.run_path(str(ROOT / "src/sim/bullet_sim/src/bullet_sim/props.py"), run_name="__main__")
     if (ROOT / "src/compat/turtlebot3_gazebo").is_dir():  # for after a `git pull`; takes 0.6 s
-        subprocess.run([sys.executable, "-B", ROOT / "tools/makers", "turtlebot3_worlds"],
-                       stdout=subprocess.DEVNULL, check=False)
+        subprocess.run([sys.executable, "-B", ROOT / "tools/makers", "name_packages",
+                        "turtlebot3_worlds"], stdout=subprocess.DEVNULL, check=False)
 collect_ignore = sorted(map(str, rostest_scripts()))

@@ -15,5 +15,7 @@ for word in "$@"; do
   esac
 done
 # Not with `rosrun`: a missing package may be why this workspace could not be built.
-export PYTHONPATH=$root/src/workspace_needs/src ROS_PACKAGE_PATH=$root/src:/usr/share
+compat=$root/src/compat
+export PYTHONPATH=$root/src/workspace_needs/src:$compat/headless_highgui/src:$compat/terminal_language/src
+export ROS_PACKAGE_PATH=$root/src:/usr/share
 exec python3 -m workspace_needs.command "${arguments[@]}" "$workspace"

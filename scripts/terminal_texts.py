@@ -56,8 +56,9 @@ OF_EXPAT = ("not well-formed (invalid token)", "mismatched tag", "no element fou
 # Of shell scripts that `python3 -m terminal_language` translates, as the terminal is a learner's.
 OF_SHELL = (
     "rosed: {0} is not installed; {1} opens {2}", "rosed: {0} has no screen here; {1} opens {2}",
-    "rosed: {0} is not installed, nor is another editor; type: sudo apt-get install nano",
-    "rosed: {0} has no screen here, nor is another editor; type: sudo apt-get install nano",
+    "rosed: {0} is not installed, and no other editor is installed; type: sudo apt-get install nano",
+    "rosed: {0} has no screen here, and no other editor is installed; type: sudo apt-get install "
+    "nano",
     "{0} {1} is in C++ and not built yet; type: make -C {2} build CPP=1")
 ABSENT = "src/workspace_needs/data/absent.yaml"
 CHECK = "src/workspace_needs/src/workspace_needs/check/findings.py"
@@ -69,15 +70,21 @@ OF_TABLES = (
     "mission", "passed", "after s", "contacts", "why not", "yes", "mapping", "goals", "standing")
 # Of progress lines, whose frame has few words.
 OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off",
-               "{0} points", "{0} points, {1}", "closed", "stalled", "time is up", "not allowed",
-               "not run", "fault")
+               "{0} points", "{0} points, {1}", "closed", "stalled", "time is up", "ended early",
+               "not allowed", "not run", "fault")
 # Of an exercise's findings, whose values may be a word.
 OF_FINDINGS = ("pass  {0}", "FAIL  {0}", "{0}, wanted {1}", "at least {0}", "at most {0}",
                "messages", "there", "missing", "drives", "stands", "{0} poses")
 # Of lists that a file's faults stand in, whose frame has one word.
-OF_LISTS = ("one of {0}", "line {0}", "line {0}: {1}", "line {0}, column {1}")
+OF_LISTS = ("one of {0}", "line {0}", "line {0}: {1}", "line {0}, column {1}", "left out",
+            "line {0}, column {1} (file {2})", "line {0}, column {1}: {2}", "write &amp; for &", "write &gt; for >",
+            "it must be a whole number of pixels, 1 or more", "link of model {0}",
+            "joint of model {0}")
+# Values of sentences, which may be names elsewhere.
+OF_VALUES = ("none", "parent link", "child link", "link", "joint", "model", "sensor")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
-            "world {0} ({1} models)", "the text",
+            "world {0} ({1} models)", "model {0} ({1} links, {2} joints)", "the text",
+            "{0} includes <{1}>, and the C++ API of Gazebo is not here",
             "{0} packages: all that Debian has for them is installed",  # of deps
             "{0} packages: to be installed: {1}", "{0} packages: installing {1}")
 
@@ -182,6 +189,7 @@ def python_texts() -> dict[str, list[str]]:
     found |= {text: ["expat"] for text in OF_EXPAT}
     found |= {text: [CHECK] for text in OF_CHECK}
     found |= {f"column{CONTEXT}{word}": ["tables"] for word in OF_TABLES}
+    found |= {f"value{CONTEXT}{word}": ["values"] for word in OF_VALUES}
     found |= {text: ["progress-lines"] for text in OF_PROGRESS}
     found |= {text: ["findings"] for text in OF_FINDINGS}
     found |= {text: ["lists-of-faults"] for text in OF_LISTS}

@@ -14,7 +14,7 @@ for word in "$@"; do
   fi
   arguments+=("$word")
 done
-page_line() { python3 -c 'from sim_viewer.running_page import running_page
+page_line() { trap '' INT; python3 -c 'from sim_viewer.running_page import running_page
 said = running_page("sim_viewer", "")
 print(said[0] % said[1:] if said else "")' "${arguments[@]/#/_}"; }
 # What a log says went wrong, three lines of it at most; fails if there is none.

@@ -3,24 +3,26 @@
     python3 tools/makers                       lists the makers
     python3 tools/makers NAME... [--out DIR]   writes what differs of theirs (DIR: this repository)
 
-A maker is a module beside this one with a function `files`. What they make is committed, except
-that of turtlebot3_worlds, which each build makes. The pictures of pages have programs of their own
+A maker is a module beside this one with a function `files`, and `stale` if it removes folders that
+it made once. What they make is committed, except that of name_packages and turtlebot3_worlds, which
+each build makes. The pictures of pages have programs of their own
 here, lesson_pictures.py and theory_pictures.py.
 """
 
 import argparse
 import importlib
+import shutil
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path += map(str, [*ROOT.glob("src/*/src"), *ROOT.glob("src/*/*/src")])  # as before a build
-MAKERS = ("course", "gazebo_worlds", "lane_world", "racecar_meshes", "racetrack",
+MAKERS = ("course", "gazebo_worlds", "lane_world", "name_packages", "racecar_meshes", "racetrack",
           "turtlebot3_meshes", "turtlebot3_worlds", "urdf_lesson_mesh")
 
 
 def main() -> int:
-    """The exit status: 0, or 1 with one line that says which file cannot be written."""
+    """The exit status: 0, or 1 with one line that says which file cannot be written or read."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME", choices=[[], *MAKERS],
                         help=", ".join(MAKERS))
@@ -28,19 +30,24 @@ def main() -> int:
                         help="write below it (default: this repository)")
     options = parser.parse_args()
     from bullet_sim.props import replace_file  # of the path above
+    from run_session.failure import RunError
     for name in options.names or MAKERS:
         maker = importlib.import_module(name)
         if not options.names:
             print(f"{name:18} {maker.__doc__.splitlines()[0]}")
             continue
-        for path, data in maker.files().items():
-            try:
-                written = replace_file(options.out / path, data)
-            except OSError as error:
-                print(f"makers: {options.out / path}: {error.strerror}", file=sys.stderr)
-                return 1
-            if written:
-                print(f"{options.out / path}: {len(data)} bytes")
+        try:
+            for path, data in maker.files().items():
+                if replace_file(options.out / path, data):
+                    print(f"{options.out / path}: {len(data)} bytes")
+            for folder in getattr(maker, "stale", list)():
+                shutil.rmtree(folder)
+        except OSError as error:
+            print(f"makers: {error.filename}: {error.strerror}", file=sys.stderr)
+            return 1
+        except RunError as error:
+            print(f"makers: {error}", file=sys.stderr)
+            return 1
     return 0
 
 

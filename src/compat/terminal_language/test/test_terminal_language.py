@@ -83,6 +83,21 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
      "mark: 缺少 --submissions（SUBMISSIONS=）：放作业的文件夹"),
     ("legs cannot be built: a: nobody has that name; is b meant? (CMakeLists.txt asks for it)",
      "legs 不能编译：a：没有谁有这个名字；是不是 b？（CMakeLists.txt 需要它）"),
+    ("a: it will be without: not in Debian; gmapping makes a map from the same topics (rosrun "
+     "gmapping slam_gmapping), hector_mapping without odometry (package.xml asks for it)",
+     "a: 它会缺少：Debian 里没有；gmapping 用同样的话题建图（rosrun gmapping slam_gmapping），"
+     "hector_mapping 不需要里程计（package.xml 需要它）"),
+    ("navigate: --map a.yaml: no such file; it is a map's NAME.yaml",
+     "navigate: --map a.yaml：没有这个文件；应该是地图的 名字.yaml"),
+    ("a.world, line 1: write &amp; for &; line 2: write b=\"...\" with quotes; taken all the same, "
+     "as by Gazebo",
+     'a.world，第 1 行：请把 & 写成 &amp;; 第 2 行：请加引号写成 b="..."；和 Gazebo 一样照样读取'),
+    ("model 'm' <pose>: '1 2 x' is not 6 numbers; 0 0 0 0 0 0 is used instead",
+     "model 'm' <pose>：'1 2 x' 不是 6 个数；改用 0 0 0 0 0 0"),
+    ("no joint of model m named 'j'; there are: none", "没有名为 'j' 的模型 m 的关节；有：无"),
+    ("model m (1 links, 0 joints)", "模型 m（1 个连杆，0 个关节）"),
+    ("target a: left out: a.cpp includes <gazebo/gazebo.hh>, and the C++ API of Gazebo is not here",
+     "target a: 略去：a.cpp 包含 <gazebo/gazebo.hh>，而这里没有 Gazebo 的 C++ API"),
     ("3 packages: to be installed: a b", "3 个包：需要安装：a b"),
     ("line 3", "第 3 行"),
     ("not well-formed (invalid token): line 1, column 28",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import signal
 import sys
 from collections.abc import Iterator
@@ -11,7 +12,9 @@ from pathlib import Path
 
 import rospkg
 from node_basics.ending import interruptible
+from terminal_language.wanted import wanted_language
 
+from bullet_sim.errors import did_you_mean
 from exercises.catalogue import MODULES, Exercise, find_exercises
 from exercises.finding import CannotCheck, Finding, Mistake, TimeUp
 from exercises.program import line_in, said
@@ -58,7 +61,7 @@ def list_all(known: dict[str, Exercise]) -> int:
     """Print name, title and file of each exercise; returns the exit code."""
     width = max(map(len, known), default=0)
     for name, exercise in known.items():
-        print(f"{name:{width}}  {exercise.title}  ({shown(exercise.start)})")
+        print(f"{name:{width}}  {title(exercise)}  ({shown(exercise.start)})")
     print("Check one: rosrun exercises check_exercise NAME")
     return PASSED
 
@@ -66,8 +69,15 @@ def list_all(known: dict[str, Exercise]) -> int:
 def chosen(known: dict[str, Exercise], name: str) -> Exercise:
     """The exercise of that name; if there is none, CannotCheck lists all."""
     if name not in known:
-        raise CannotCheck(f"no exercise {name!r}; there are: {', '.join(known)}")
+        raise CannotCheck(f"no exercise {name!r}{did_you_mean(name, known, 0.75)}; there are: "
+                          f"{', '.join(known)}")
     return known[name]
+
+
+def title(exercise: Exercise) -> str:
+    """In the terminal's language, if the title has two, with two spaces between them."""
+    english, _, chinese = exercise.title.partition("  ")
+    return chinese.strip() if chinese and wanted_language(dict(os.environ)) else english
 
 
 def check(exercise: Exercise, file: Path | None = None) -> int:
@@ -75,7 +85,7 @@ def check(exercise: Exercise, file: Path | None = None) -> int:
     file = file or exercise.start
     if not file.is_file():
         raise CannotCheck(f"{file}: no such file; leave FILE out to check {exercise.start}")
-    print(f"{exercise.title}  ({shown(file)})")
+    print(f"{title(exercise)}  ({shown(file)})")
     failed, count = 0, 0
     try:
         for finding in findings(exercise, file):

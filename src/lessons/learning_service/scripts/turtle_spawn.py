@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Call a service: turtlesim spawns a second turtle.  调用服务，再生成一只海龟。"""
 
+import sys
+
 import rospy
 from turtlesim.srv import Spawn
 
@@ -15,9 +17,8 @@ def main():
     spawn = rospy.ServiceProxy("/spawn", Spawn)
     try:
         response = spawn(X, Y, THETA, NAME)
-    except rospy.ServiceException as error:
-        rospy.logerr("no turtle: %s  (is there a %s already? 是否已有同名海龟？)", error, NAME)
-        return
+    except rospy.ServiceException:  # turtlesim says why  原因见 turtlesim 的终端
+        sys.exit(f"no turtle: is there a {NAME} already?  是否已有同名海龟？")
     rospy.loginfo("spawned: %s", response.name)
 
 

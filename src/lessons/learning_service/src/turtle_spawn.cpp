@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   if (client.call(spawn)) {
     ROS_INFO("spawned: %s", spawn.response.name.c_str());
   } else {
-    ROS_ERROR("no turtle: is there a %s already? 是否已有同名海龟？", spawn.request.name.c_str());
+    ROS_ERROR("no turtle: is there a %s already?  是否已有同名海龟？", spawn.request.name.c_str());
+    return 1;
   }
 }

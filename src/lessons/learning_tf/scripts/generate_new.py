@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Follow, 1 of 3: spawn a second turtle.  跟随（一）：生成第二只海龟。"""
 
+import sys
+
 import rospy
 from turtlesim.srv import Spawn
 
@@ -14,8 +16,8 @@ def main():
     try:
         response = rospy.ServiceProxy("/spawn", Spawn)(X, Y, THETA, NAME)
         rospy.loginfo("spawned: %s", response.name)
-    except rospy.ServiceException as error:
-        rospy.logerr("no turtle: %s  (is there a %s already? 是否已有同名海龟？)", error, NAME)
+    except rospy.ServiceException:  # turtlesim says why  原因见 turtlesim 的终端
+        sys.exit(f"no turtle: is there a {NAME} already?  是否已有同名海龟？")
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   if (ros::service::call("/spawn", spawn)) {
     ROS_INFO("spawned: %s", spawn.response.name.c_str());
   } else {
-    ROS_ERROR("no turtle: is there a %s already? 是否已有同名海龟？", spawn.request.name.c_str());
+    ROS_ERROR("no turtle: is there a %s already?  是否已有同名海龟？", spawn.request.name.c_str());
+    return 1;
   }
 }

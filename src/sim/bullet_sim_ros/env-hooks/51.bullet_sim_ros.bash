@@ -20,7 +20,7 @@ if [ -r /usr/share/bash-completion/completions/roscd ]; then
         return
       fi
     done
-    _rosed_says "rosed: $1 $why, nor is another editor; type: sudo apt-get install nano"
+    _rosed_says "rosed: $1 $why, and no other editor is installed; type: sudo apt-get install nano"
     return 1
   }
   _rosed_says() { { python3 -m terminal_language <<< "$1" 2> /dev/null || echo "$1"; } >&2; }

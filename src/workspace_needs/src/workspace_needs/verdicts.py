@@ -87,7 +87,7 @@ class _Judgement:
             return verdict
         result = self._configured.get(package.name)
         if result and result.error:
-            self._blame(verdict, result)
+            self._blame(verdict, result, package)
         for asked in package.asked:
             if not self._missing(verdict, asked.key) and asked.key not in self._known | {
                     *verdict.stops} and self._answers[asked.key].kind not in (OURS, DEBIAN):
@@ -106,7 +106,7 @@ class _Judgement:
         verdict.missing.update(missing)
         return bool(missing)
 
-    def _blame(self, verdict: Verdict, result: Configured) -> None:
+    def _blame(self, verdict: Verdict, result: Configured, package: Package) -> None:
         """Notes why CMake ended with an error: what is absent, else the error itself."""
         explained = False
         for name in result.absent:
@@ -114,7 +114,7 @@ class _Judgement:
                 verdict.stops[name] = ("it is configured later, because package.xml does not name "
                                        f"it; add <depend>{name}</depend> there")
                 continue
-            if name in self._names:
+            if name in self._names and name not in package.built_with:
                 verdict.lacks[name] = (
                     "package.xml does not name it: catkin_make comes to it earlier only by its "
                     f"name, catkin build may not; add <depend>{name}</depend> there")

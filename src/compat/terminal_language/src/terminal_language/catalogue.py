@@ -24,6 +24,7 @@ SPACED = re.compile(r"(?<=[\u4e00-\u9fff])(?: \0|\0 )(?=[\u4e00-\u9fff])")
 UNSPACED = re.compile(r"(?<=[\u4e00-\u9fff])\0+(?=[A-Za-z0-9])"
                       r"|(?<=[A-Za-z0-9])\0+(?=[\u4e00-\u9fff])")
 FEWEST_WORDS = 3  # of what stays English; what has fewer is a frame for other texts
+VALUE = "value\4"  # gettext's msgctxt
 LONGEST = 1000  # characters of a line
 DEPTH = 4  # of texts within texts
 
@@ -52,8 +53,9 @@ class Sentence:
                 text.startswith(first) and text.endswith(last)):
             return None
         values = []
-        for part in further:
-            found = text.find(part, at, end)
+        for number, part in enumerate(further, start=1):
+            find = text.rfind if last and number == len(further) else text.find
+            found = find(part, at, end)
             if found < 0:
                 return None
             values.append(text[at:found])
@@ -107,6 +109,8 @@ class Catalogue:
         if name.isidentifier() and rest in self._exact:  # a program before its text
             return f"{self._exact.get(name, name)}: {self._exact[rest]}"
         found = self._clause(text, depth)
+        if found is None and name.isidentifier() and (told := self._clause(rest, depth)):
+            return f"{self._exact.get(name, name)}: {told}"
         parts = JOINTS.split(text)
         if found is not None or len(parts) == 1:
             return found
@@ -147,8 +151,9 @@ class Catalogue:
         for sentence in self._sentences:
             values = sentence.values(text)
             if values is not None:
-                return sentence.filled({number: self._around(value, depth - 1) or value
-                                        for number, value in values.items()})
+                return sentence.filled({
+                    number: self._around(value, depth - 1) or self._exact.get(VALUE + value, value)
+                    for number, value in values.items()})
         return None
 
 

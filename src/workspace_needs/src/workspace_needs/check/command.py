@@ -31,7 +31,8 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("what", help="file (.urdf .xacro .sdf .world .launch), model folder, "
                                      "package or workspace")
     parser.add_argument("launch", nargs="?", help="launch file of the package")
-    parser.add_argument("arguments", nargs="*", metavar="name:=value", help="for xacro or launch")
+    parser.add_argument("arguments", nargs="*", default=[], metavar="name:=value",
+                        help="for xacro or launch")
     parser.add_argument("--all", action="store_true", help="also list accepted tags without effect")
     parser.add_argument("--run-commands", action="store_true",
                         help="run the commands of a launch file's parameters; without it xacro "

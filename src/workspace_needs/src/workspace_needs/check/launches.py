@@ -140,6 +140,9 @@ class LaunchChecker:
             if text.startswith(OF_OPENCV):
                 return []
             list(yaml.compose_all(text, yaml.SafeLoader))  # tags may be anybody's own
+        except yaml.MarkedYAMLError as error:
+            line, column = error.problem_mark.line + 1, error.problem_mark.column + 1
+            return [problem(where, "YAML", f"line {line}, column {column}: {error.problem}")]
         except (SimulationError, yaml.YAMLError) as error:
             return [problem(where, "YAML", error)]
         except RecursionError:

@@ -117,7 +117,8 @@ def _utf8(path: Path) -> str:
 
 
 def _logged(captured: list[LogLine], where: str) -> list[Finding]:
-    return [Finding(where, "it says", each.status, " ".join(each.line.split()))
+    return [Finding(where, "it says", each.status,
+                    " ".join(each.line.split()).replace("the text, ", f"{where}, "))
             for each in captured]
 
 

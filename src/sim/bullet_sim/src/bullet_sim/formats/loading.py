@@ -146,6 +146,7 @@ def _read_root(root: Element, source: Source) -> ModelDescription:
     found = read_include(include, source)
     if not isinstance(found, ModelDescription):
         uri = (include.findtext("uri") or "").strip()
+        source.resources.resolve(uri)
         raise FormatError(f"<include> of {uri!r} contains no model")
     # The service writes a <pose> into the include, which replaces the model's own.
     return found if include.find("pose") is not None else replace(found, pose=IDENTITY)

@@ -6,6 +6,7 @@ The rules are TinyXML 2.6's, tinyxmlparser.cpp. Recovering parsers have others: 
 
 import re
 
+MOST_ADVICE = 5  # remarks on one text
 MOST_PARTS = 2_000_000  # of a text; the rest of it stays as it is
 NAME = r"[^\W\d][\w.:-]*"
 ATTRIBUTE = rf"""(\s*)({NAME})(\s*=\s*)(?>"([^"]*)"|'([^']*)'|([^\s/>"']*+)(?=[\s/>]))"""
@@ -60,12 +61,14 @@ class _Mender:
         return "".join(parts)
 
     def advice(self) -> str:
-        """`line 3: write &amp; for &; line 7: ...`, in the order of the lines."""
+        """`line 3: write &amp; for &; line 7: ...`, in the order of the lines; the first ones."""
         line, counted, said = 1, 0, []
-        for what, place in self._first.items():  # in the order of their places
+        for what, place in [*self._first.items()][:MOST_ADVICE]:  # in the order of their places
             line += self._text.count("\n", counted, place)
             counted = place
             said.append(f"line {line}: {what}")
+        if (more := len(self._first) - MOST_ADVICE) > 0:
+            said.append(f"and {more} more of this kind")
         return "; ".join(said)
 
     def _rewritten(self, found: re.Match) -> str:

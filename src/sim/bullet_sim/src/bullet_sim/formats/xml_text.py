@@ -30,6 +30,8 @@ def parse_xml(text: str, what: str = "XML") -> Element:
     if len(text) > LARGEST_TEXT:
         raise FormatError(_too_large(what, len(text)))
     content = text.lstrip("\ufeff \t\r\n")
+    if not content:
+        raise FormatError(f"{what} is empty: there is no XML in it")
     if declaration := DECLARATION.match(content):
         content = content[declaration.end():]
     before = text[:len(text) - len(content)]

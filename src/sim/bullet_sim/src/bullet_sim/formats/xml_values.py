@@ -45,8 +45,8 @@ def numbers(text: str, count: int, where: str) -> tuple[float, ...]:
     except (ValueError, OverflowError):  # float.fromhex has no infinity for 0x1p9999
         values = ()
     if len(values) != count or any(math.isnan(value) for value in values):
-        wanted = "a number" if count == 1 else f"{count} numbers"
-        raise FormatError(f"{where}: {_quoted(text)} is not {wanted}")
+        raise FormatError(f"{where}: {_quoted(text)} is not a number" if count == 1 else
+                          f"{where}: {_quoted(text)} is not {count} numbers")
     if any(math.isinf(value) for value in values):
         raise FormatError(f"{where}: {_quoted(text)} is not finite")
     return values
