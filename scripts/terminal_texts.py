@@ -27,7 +27,7 @@ LANGUAGE = "zh_CN"
 INSTRUMENTS = re.compile(
     r"src/sim_bench/|src/compat/terminal_language/|src/trial_worlds/"
     r"|src/.*/(training|test)/"
-    r"|src/.*/(setup|conftest|(make|draw|train)_\w+)\.py|src/sim/bullet_sim/examples/"
+    r"|src/.*/(setup|conftest|(draw|train)_\w+)\.py|src/sim/bullet_sim/examples/"
     r"|src/driving_courses/examples/|src/evaluation/src/evaluation/\w+_trials\.py")
 # Parts of the page's server, whose texts only the page shows.
 PAGE = re.compile(
@@ -71,7 +71,7 @@ OF_TABLES = (
 # Of progress lines, whose frame has few words.
 OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off",
                "{0} points", "{0} points, {1}", "closed", "stalled", "time is up", "ended early",
-               "not allowed", "not run", "fault")
+               "not allowed", "not run", "fault", "preview: {0}", "next:")
 # Of an exercise's findings, whose values may be a word.
 OF_FINDINGS = ("pass  {0}", "FAIL  {0}", "{0}, wanted {1}", "at least {0}", "at most {0}",
                "messages", "there", "missing", "drives", "stands", "{0} poses")
@@ -79,9 +79,13 @@ OF_FINDINGS = ("pass  {0}", "FAIL  {0}", "{0}, wanted {1}", "at least {0}", "at 
 OF_LISTS = ("one of {0}", "line {0}", "line {0}: {1}", "line {0}, column {1}", "left out",
             "line {0}, column {1} (file {2})", "line {0}, column {1}: {2}", "write &amp; for &", "write &gt; for >",
             "it must be a whole number of pixels, 1 or more", "link of model {0}",
-            "joint of model {0}")
+            "joint of model {0}", "map on {0}", "laser scans on {0}")
+# Of missing_headers.cmake.
+OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its place: {3}",
+            "{0}: <{1}> is included, but CMakeLists.txt does not name {2} in find_package(catkin "
+            "... COMPONENTS ...): found all the same")
 # Values of sentences, which may be names elsewhere.
-OF_VALUES = ("none", "parent link", "child link", "link", "joint", "model", "sensor")
+OF_VALUES = ("none", "a number", "this user", "parent link", "child link", "link", "joint", "model", "sensor")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
             "world {0} ({1} models)", "model {0} ({1} links, {2} joints)", "the text",
             "{0} includes <{1}>, and the C++ API of Gazebo is not here",
@@ -194,7 +198,9 @@ def python_texts() -> dict[str, list[str]]:
     found |= {text: ["findings"] for text in OF_FINDINGS}
     found |= {text: ["lists-of-faults"] for text in OF_LISTS}
     found |= {text: ["rosed-and-rosrun"] for text in OF_SHELL}
+    found |= {text: ["missing_headers.cmake"] for text in OF_CMAKE}
     found |= {text: [ABSENT] for text in absences()}
+    found |= {text: ["params-of-navigation"] for text in meanings()}
     listed = subprocess.run(
         ["git", "-C", str(ROOT), "ls-files", "-co", "--exclude-standard", "src"],
         capture_output=True, text=True, check=True).stdout.split("\n")
@@ -216,6 +222,13 @@ def python_texts() -> dict[str, list[str]]:
 def absences() -> list[str]:
     """Why nobody has a package: rosdep, check and the build print that."""
     return re.findall(r"^  why: (.*)", (ROOT / ABSENT).read_text(encoding="utf-8"), re.MULTILINE)
+
+
+def meanings() -> list[str]:
+    """Why parameters of navigation have no effect."""
+    return sorted({found for path in ROOT.glob("src/navigation/*/params/*.yaml")
+                   for found in re.findall(r'status: accepted, meaning: "(.*)"}',
+                                           path.read_text(encoding="utf-8"))})
 
 
 def kept() -> list[str]:

@@ -12,6 +12,9 @@ for word in "$@"; do
     word=rviz:=$(realpath -m -- "${word#rviz:=}")  # the node runs in another folder
     rosrun sim_viewer rviz_page --check -d "${word#rviz:=}" || exit 2
   fi
+  if [[ $word == port:=* ]] && ! [[ ${word#port:=} =~ ^[1-9][0-9]{0,4}$ && ${word#port:=} -le 65535 ]]; then
+    fail $"port is ${word#port:=}; give one from 1 to 65535, such as PORT=8080"
+  fi
   arguments+=("$word")
 done
 page_line() { trap '' INT; python3 -c 'from sim_viewer.running_page import running_page

@@ -12,9 +12,11 @@ here, lesson_pictures.py and theory_pictures.py.
 import argparse
 import importlib
 import shutil
+import signal
 import sys
 from pathlib import Path
 
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C during setup ends it without a traceback
 ROOT = Path(__file__).resolve().parents[2]
 sys.path += map(str, [*ROOT.glob("src/*/src"), *ROOT.glob("src/*/*/src")])  # as before a build
 MAKERS = ("course", "gazebo_worlds", "lane_world", "name_packages", "racecar_meshes", "racetrack",

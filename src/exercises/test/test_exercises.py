@@ -86,13 +86,24 @@ def test_the_lessons_page_has_the_task_the_command_and_hints(folder, page):
 def test_without_a_name_it_lists_all(capsys):
     assert main([]) == 0
     listed = capsys.readouterr().out
-    assert all(f"{name} " in listed and each.title in listed for name, each in EXERCISES.items())
+    assert all(f"{name} " in listed and each.title.partition("  ")[0] in listed
+               for name, each in EXERCISES.items())
+
+
+@pytest.mark.parametrize(("language", "said"), [
+    ("en", "A controller for each hinge  ("), ("zh_CN", "steering     每个转向铰链一个控制器  (")])
+def test_titles_are_in_the_terminals_language(capsys, monkeypatch, language, said):
+    monkeypatch.setenv("LC_ALL", "C.UTF-8")
+    monkeypatch.setenv("LANGUAGE", language)
+    assert main([]) == 0
+    assert said in capsys.readouterr().out
 
 
 def test_an_unknown_name_lists_all(capsys):
     assert main(["white_lane"]) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1 and all(name in said for name in EXERCISES)
+    assert "(did you mean white_line?)" in said
 
 
 @pytest.mark.parametrize(("text", "said"), [

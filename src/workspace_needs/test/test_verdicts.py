@@ -225,6 +225,25 @@ def test_deps_says_what_it_would_install_and_what_nobody_has(tmp_path, capsys, b
     assert said.count("MoveIt is not in Debian") == 1
 
 
+def test_catkin_make_leaves_out_what_waits_for_a_package_of_debian(tmp_path, capsys, bare):
+    add_package(tmp_path / "src", "filter", "bfl", "", "find_package(bfl REQUIRED)")
+    add_package(tmp_path / "src", "user", "filter", "filter")
+    add_package(tmp_path / "src", "wheel", "", "")
+    assert all(verdict.builds for verdict in judge(tmp_path / "src"))  # once it is installed
+    option = catkin_make_words(["-C", str(tmp_path)])[len(hook())]
+    assert option == "-DCATKIN_BLACKLIST_PACKAGES=filter;user"
+    assert capsys.readouterr().out == (
+        "filter is left out: liborocos-bfl-dev: it is not installed; type: rosrun workspace_needs "
+        f"deps {tmp_path}\nuser is left out: filter: it is left out itself\n")
+
+
+def test_a_package_is_not_told_to_name_what_it_names(tmp_path, bare):
+    add_package(tmp_path / "src", "b", "", "", 'message(FATAL_ERROR "worn out")')
+    add_package(tmp_path / "src", "c", "b", "b")
+    assert of(tmp_path / "src", "c").stops == {"b": "it is left out itself"}
+    assert not of(tmp_path / "src", "c").lacks
+
+
 def test_catkin_make_leaves_out_what_cannot_be_built(tmp_path, capsys, monkeypatch, bare):
     add_package(tmp_path / "src", "arm", "moveit_core", "moveit_core")
     add_package(tmp_path / "src", "wheel", "", "")

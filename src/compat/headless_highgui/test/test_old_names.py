@@ -21,7 +21,7 @@ ESTIMATE = ("found = cv2.aruco.ArucoDetector(d).detectMarkers(image)[0]\n"
             "    found, 0.1, np.array([[400, 0, 200], [0, 400, 200], [0, 0, 1.0]]), np.zeros(5))\n"
             "print(r.shape, t.round(2).ravel().tolist())")
 SCRIPTS = {  # code: what it prints, the new form
-    "import numpy as np; print(np.float(3))": ("3.0", "numpy.float is old: write float"),
+    "import numpy as np; print(np.float(3))": ("3.0", "numpy.float is an old name: write float"),
     "import numpy as np; print(np.zeros(1, dtype=np.int))": ("[0]", "write int"),
     "from numpy import object as o; print(o)": ("<class 'object'>", "write object"),
     "import numpy as np; print(np.asscalar(np.array([4])))": ("4", "write array.item()"),
@@ -65,7 +65,7 @@ def test_an_old_name(tmp_path, code):
     shown, new = SCRIPTS[code]
     done = run(tmp_path, code)
     assert (done.stdout.strip(), done.returncode) == (shown, 0), done.stderr
-    lines = [line for line in done.stderr.splitlines() if "is old: write" in line]
+    lines = [line for line in done.stderr.splitlines() if "is an old name: write" in line]
     assert lines and all(line.startswith(f"{tmp_path}/old.py:") for line in lines)
     assert new in lines[-1]
 

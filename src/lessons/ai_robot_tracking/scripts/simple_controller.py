@@ -68,7 +68,7 @@ def main():
         time.sleep(0.05)
     controller.forward(settings.speed, settings.duration)
     controller.rotate(settings.turn, settings.turn_duration)
-    rospy.loginfo("done")
+    rospy.loginfo("the drive is over, the robot stands")
     return 0
 
 

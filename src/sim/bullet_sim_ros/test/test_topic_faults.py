@@ -52,7 +52,7 @@ def test_two_that_send_at_once_are_two_drivers(monkeypatch):
     note(senders, "/a", "/tf")
     note(senders, "/b", "/tf")
     line, = lines(contested(senders.recent(now), types))
-    assert line.startswith("/follower_12 and /teleop send commands on /cmd_vel")
+    assert line.startswith("/follower_12, /teleop send commands on /cmd_vel")
     now += RECENT + 0.1  # the teleop is silent now: one took over from the other
     note(senders, "/follower_12")
     assert not lines(contested(senders.recent(now), types))

@@ -38,6 +38,6 @@ class TopicFaults(unittest.TestCase):
         blind.unregister()
         self.drive("teleop")
         self.drive("follower")
-        rosout.wait_for("/follower and /teleop send commands on /cmd_vel at the same time")
+        rosout.wait_for("/follower, /teleop send commands on /cmd_vel at the same time")
         said = [line for line in rosout.lines if "commands on" in line or "waits for" in line]
         self.assertEqual(len(said), 3, said)

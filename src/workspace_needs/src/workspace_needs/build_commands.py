@@ -102,7 +102,7 @@ def left_out(tool: str, args: list[str], source: Path) -> list[str]:
     if {"-h", "--help"} & set(args) or not source.is_dir():
         return []
     try:
-        verdicts = judge(source, words=args)
+        verdicts = judge(source, words=args, now=True)
         for verdict in verdicts:
             if verdict.hides_ours:
                 hide(verdict.folder)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import shlex
 import subprocess
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -26,6 +27,7 @@ class Verdict:
     name: str
     folder: Path
     missing: dict[str, str] = field(default_factory=dict)  # Debian package: the key that needs it
+    waits: str = ""  # of `missing`, the one for want of which CMake ends with an error now
     stops: dict[str, str] = field(default_factory=dict)  # obstacle to building it: reason
     lacks: dict[str, str] = field(default_factory=dict)  # missing, but not needed to build: reason
     left_out: dict[str, str] = field(default_factory=dict)  # target or source file: reason
@@ -39,11 +41,13 @@ class Verdict:
         return not self.stops
 
 
-def judge(source: Path, tables: Tables | None = None, words: Iterable[str] = ()) -> list[Verdict]:
+def judge(source: Path, tables: Tables | None = None, words: Iterable[str] = (),
+          now: bool = False) -> list[Verdict]:
     """A verdict for each package below `source` that does not belong to this repository.
 
     `words`: the -D options with which the workspace is built, behind those that `catkin config`
-    saved. WorkspaceError if no build tool can build any.
+    saved. `now`: what is not installed stops a package whose CMake ends with an error without it.
+    WorkspaceError if no build tool can build any.
     """
     tables = tables or Tables()
     packages = [package for package in read_workspace(source) if not package.is_ours]
@@ -55,6 +59,11 @@ def judge(source: Path, tables: Tables | None = None, words: Iterable[str] = ())
     verdicts = [Verdict(package.name, package.folder, hides_ours=True,
                         stops={"ours is used": hidden[package.name]})
                 if package.name in hidden else judgement.of(package) for package in packages]
+    for verdict in verdicts if now else ():
+        if verdict.waits:
+            verdict.stops[verdict.waits] = (
+                "it is not installed; type: rosrun workspace_needs deps "
+                f"{shlex.quote(str(source.resolve().parent))}")
     _pass_on(configured, verdicts)
     _note_clashes(configured, verdicts)
     return verdicts
@@ -119,8 +128,12 @@ class _Judgement:
                     "package.xml does not name it: catkin_make comes to it earlier only by its "
                     f"name, catkin build may not; add <depend>{name}</depend> there")
             kind = self._answers[name].kind
-            if self._missing(verdict, name) or kind == OURS or name == "gazebo":
-                explained = True  # to be installed or built first
+            if self._missing(verdict, name):
+                verdict.waits = next(package for package, key in verdict.missing.items()
+                                     if key == name)
+                explained = True
+            elif kind == OURS or name == "gazebo":
+                explained = True  # to be built first
             elif kind != DEBIAN:  # what is installed is there in another version, say
                 verdict.stops[name] = f"{self._answers[name].why} (CMakeLists.txt asks for it)"
         if not explained and verdict.builds:

@@ -46,7 +46,7 @@ def tell(old, new, frame):
     if old in _told:
         return
     _told.add(old)
-    print(translated(f"{frame.f_code.co_filename}:{frame.f_lineno}: {old} is old: write {new}"),
+    print(translated(f"{frame.f_code.co_filename}:{frame.f_lineno}: {old} is an old name: write {new}"),
           file=sys.stderr, flush=True)
 
 

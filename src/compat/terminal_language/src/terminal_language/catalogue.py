@@ -108,9 +108,9 @@ class Catalogue:
         name, _, rest = text.partition(": ")
         if name.isidentifier() and rest in self._exact:  # a program before its text
             return f"{self._exact.get(name, name)}: {self._exact[rest]}"
+        if name.isidentifier() and self._weight(rest) > self._weight(text):
+            return f"{self._exact.get(name, name)}: {self._clause(rest, depth)}"
         found = self._clause(text, depth)
-        if found is None and name.isidentifier() and (told := self._clause(rest, depth)):
-            return f"{self._exact.get(name, name)}: {told}"
         parts = JOINTS.split(text)
         if found is not None or len(parts) == 1:
             return found
@@ -140,10 +140,17 @@ class Catalogue:
         """The translation of a text, or of what stands before its brackets, and of those."""
         found = self._sentence(text, depth)
         if found is None and (ending := IN_BRACKETS.fullmatch(text)):
-            head = self._sentence(ending[1], depth)
-            found = None if head is None else head + (
-                self._around(ending[2], depth - 1) or ending[2])
+            head, why = self._sentence(ending[1], depth), self._exact.get(ending[2][2:-1])
+            if head is not None:
+                found = head + (self._around(ending[2], depth - 1) or ending[2])
+            elif why is not None and not JOINTS.search(ending[1]):  # a name and why
+                found = f"{ending[1]}（{why}）"
         return found
+
+    def _weight(self, text: str) -> int:
+        """The number of letters of the sentence that a text is an instance of, or 0."""
+        return next((sentence.weight for sentence in self._sentences
+                     if sentence.values(text) is not None), 0)
 
     def _sentence(self, text: str, depth: int) -> str | None:
         if text in self._exact or depth == 0:

@@ -129,8 +129,9 @@ def wait_for_master() -> None:
     """
     if rosgraph.is_master_online():
         return
-    print("[WARN] No ROS master - start roscore to continue... (looked for it at "
-          f"{rosgraph.get_master_uri()})", file=sys.stderr, flush=True)
+    said = ("No ROS master - start roscore to continue... (looked for it at "
+            f"{rosgraph.get_master_uri()})")
+    print(f"[WARN] {said}", file=sys.stderr, flush=True)
     while not rosgraph.is_master_online():
         time.sleep(0.5)
 

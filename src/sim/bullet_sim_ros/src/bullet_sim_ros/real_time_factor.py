@@ -12,7 +12,8 @@ SLOW = 0.95  # of the wanted speed; below it there is a warning
 BUSY = 0.5  # of wall time; if all stages together took less, other programs had the processor
 WAITING = "wait"  # for the previous image, the cost of which is counted under drawing
 # What a person can type or change, by the stage that costs most; IMAGES for all others.
-IMAGES = "add camera_width:=640 camera_height:=480 to the roslaunch command"
+IMAGES = ("use fewer cameras or smaller images, in our courses by camera_width:=640 "
+          "camera_height:=480 behind the roslaunch command")
 ADVICE = {
     "physics": "use fewer models, or a larger max_step_size in the world file",
     "plugins": "use fewer robots and sensors, or lower rates in their files",

@@ -81,7 +81,7 @@ def contested(senders: dict[str, list[str]], types: dict[str, str]) -> Iterator[
             yield Fault(("contested", topic, *nodes),
                         "%s send commands on %s at the same time, so the robot follows now one, "
                         "now the other: end one of them (Ctrl-C in its terminal, or rosnode kill)",
-                        (" and ".join(nodes), topic))
+                        (", ".join(nodes), topic))
 
 
 def unheard(graph: Graph, me: str) -> Iterator[Fault]:

@@ -149,6 +149,9 @@ def _error_line(error: Exception) -> str:
     """roslaunch's message as one line, without the files that include the faulty one."""
     if isinstance(error, MemoryError):
         return TOO_MUCH
+    if isinstance(error, rospkg.ResourceNotFound):
+        return (f"no package {error.args[0]} is found: source the devel/setup.bash of its "
+                "workspace first")
     text = " ".join(str(error).split()) or type(error).__name__
     text = ON_THE_WAY.sub("", text)
     text = NOT_UTF8.sub("it is not UTF-8; save it as UTF-8", text)

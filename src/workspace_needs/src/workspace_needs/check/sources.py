@@ -86,7 +86,8 @@ def _fault(line: bytes, path: Path) -> str:
         return ("a byte order mark stands before #!, so that no interpreter is found; type: "
                 f"{command}")
     if not line.startswith(b"#!"):
-        return ""
+        return (f"it has no #!, so that rosrun starts it as a shell script; {PYTHON}"
+                if path.suffix == ".py" else "")
     if line.endswith(b"\r"):
         command = rf"sed -i 's/\r$//' {shlex.quote(str(path))}"
         return f"it ends as lines do on Windows, so that no interpreter is found; type: {command}"
