@@ -56,7 +56,8 @@ OF_EXPAT = ("not well-formed (invalid token)", "mismatched tag", "no element fou
 # Of shell scripts that `python3 -m terminal_language` translates, as the terminal is a learner's.
 OF_SHELL = (
     "rosed: {0} is not installed; {1} opens {2}", "rosed: {0} has no screen here; {1} opens {2}",
-    "rosed: {0} is not installed, and no other editor is installed; type: sudo apt-get install nano",
+    "rosed: {0} is not installed, and no other editor is installed; type: sudo apt-get install "
+    "nano",
     "rosed: {0} has no screen here, and no other editor is installed; type: sudo apt-get install "
     "nano",
     "{0} {1} is in C++ and not built yet; type: make -C {2} build CPP=1")
@@ -77,7 +78,8 @@ OF_FINDINGS = ("pass  {0}", "FAIL  {0}", "{0}, wanted {1}", "at least {0}", "at 
                "messages", "there", "missing", "drives", "stands", "{0} poses")
 # Of lists that a file's faults stand in, whose frame has one word.
 OF_LISTS = ("one of {0}", "line {0}", "line {0}: {1}", "line {0}, column {1}", "left out",
-            "line {0}, column {1} (file {2})", "line {0}, column {1}: {2}", "write &amp; for &", "write &gt; for >",
+            "line {0}, column {1} (file {2})", "line {0}, column {1}: {2}",
+            "write &amp; for &", "write &gt; for >",
             "it must be a whole number of pixels, 1 or more", "link of model {0}",
             "joint of model {0}", "map on {0}", "laser scans on {0}")
 # Of missing_headers.cmake.
@@ -85,7 +87,8 @@ OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its pla
             "{0}: <{1}> is included, but CMakeLists.txt does not name {2} in find_package(catkin "
             "... COMPONENTS ...): found all the same")
 # Values of sentences, which may be names elsewhere.
-OF_VALUES = ("none", "a number", "this user", "parent link", "child link", "link", "joint", "model", "sensor")
+OF_VALUES = ("none", "a number", "this user", "parent link", "child link", "link", "joint",
+             "model", "sensor")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
             "world {0} ({1} models)", "model {0} ({1} links, {2} joints)", "the text",
             "{0} includes <{1}>, and the C++ API of Gazebo is not here",

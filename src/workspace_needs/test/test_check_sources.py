@@ -45,9 +45,15 @@ def test_an_interpreter_that_is_not_there(node, first, named):
 
 @pytest.mark.parametrize("content", [
     b"#!/usr/bin/env python3\n", b"#!/bin/sh -e\nx\r\n", b"\x7fELF\n", b"",
-    b"#!/usr/bin/env python2.7\n", b"import os\n", b"#!/usr/bin/env -S A=1 python3 -u\n"])
+    b"#!/usr/bin/env python2.7\n", b"#!/usr/bin/env -S A=1 python3 -u\n"])
 def test_others_are_not_named(node, content):
     assert node(content) == []
+
+
+def test_a_python_file_without_a_first_line(node):
+    (_, how), = node(b"import os\n")
+    assert how == ("it has no #!, so that rosrun starts it as a shell script; write "
+                   "#!/usr/bin/env python3 there")
 
 
 def test_what_catkin_starts_itself_needs_no_first_line(node):

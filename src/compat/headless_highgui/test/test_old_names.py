@@ -82,7 +82,7 @@ def test_the_scripts_line_is_named_where_python_starts_with_a_link(tmp_path):
 
 def test_it_is_said_once(tmp_path):
     done = run(tmp_path, "import numpy as np\nfor _ in range(3):\n    np.float(1)\n")
-    assert done.stderr.count("is old") == 1
+    assert done.stderr.count("is an old name") == 1
 
 
 def test_it_is_said_in_the_language_of_the_locale(monkeypatch, capsys):
@@ -90,7 +90,7 @@ def test_it_is_said_in_the_language_of_the_locale(monkeypatch, capsys):
     monkeypatch.setenv("LANG", "C.UTF-8")
     monkeypatch.setenv("LANGUAGE", "zh_CN")
     old_names.tell("numpy.spam", "numpy.eggs", sys._getframe())
-    assert capsys.readouterr().err.endswith("numpy.spam 是旧写法：请写 numpy.eggs\n")
+    assert capsys.readouterr().err.endswith("numpy.spam 是旧名字：请写 numpy.eggs\n")
 
 
 @pytest.mark.parametrize("code", [

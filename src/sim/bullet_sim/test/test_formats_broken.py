@@ -96,7 +96,7 @@ def test_a_friction_below_zero_is_without_limit(text):
 @pytest.mark.parametrize("load", [load_model, load_light])
 @pytest.mark.parametrize("text, reason", [
     ("hello", "the text is not well-formed XML: syntax error at line 1, column 1"),
-    ("", "the text is not well-formed XML: no element found at line 1, column 1"),
+    ("", "the text is empty: there is no XML in it"),
     ("<robot name='r'>\n <link></robot>",
      "the text is not well-formed XML: mismatched tag at line 2, column 10"),
     ("\n<sdf version='1.6'>\n<model name/></sdf>",

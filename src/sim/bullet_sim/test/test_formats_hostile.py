@@ -24,7 +24,7 @@ BOMB = "".join(f'<!ENTITY e{n} "{f"&e{n - 1};" * 10 if n else "lol"}">' for n in
      "the entity 'x' is declared"),
     ("<sdf>" + "<model>" * 250, "nested more than 200 deep"),
     ('<sdf version="1.6"><model name="m"><link', "not well-formed XML: unclosed token"),
-    ("", "not well-formed XML: no element found"),
+    ("", "is empty: there is no XML in it"),
     ("\x00\x01\x02", "not well-formed XML"),
 ])
 def test_one_line_and_little_memory(text, message):

@@ -79,7 +79,7 @@ def test_the_time_is_linear(part):
 def test_the_time_is_linear_in_different_attributes():
     text = "<a>" + "".join(f"\n<a b{n}=1/>" for n in range(100_000)) + "</a>"
     began = time.process_time()
-    assert as_xml(text)[1].endswith('; line 100001: write b99999="..." with quotes')
+    assert as_xml(text)[1].endswith("; and 99995 more of this kind")
     assert time.process_time() - began < 20  # 80 s, were the lines counted for each anew
 
 

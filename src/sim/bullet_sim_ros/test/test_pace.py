@@ -133,7 +133,7 @@ def test_rates_follow_a_new_step_length(world):
 
 
 @pytest.mark.parametrize(("stage", "cost", "advice"), [
-    ("draw", 0.008, "use fewer cameras or smaller images"),
+    ("draw", 0.008, monitor_module.IMAGES),
     ("physics", 0.008, "use fewer models, or a larger max_step_size in the world file"),
     ("plugins", 0.008, "use fewer robots and sensors, or lower rates in their files"),
     ("lockstep", 0.008, "make the program faster that answers each image"),

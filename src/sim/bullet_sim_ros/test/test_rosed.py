@@ -50,5 +50,5 @@ def test_without_editor_set_it_is_vim(bash, tmp_path):
 def test_with_none_at_all_it_says_which_to_install(bash, tmp_path):
     done = bash(f"PATH={tmp_path}/nowhere; _rosed_with vim a.txt")
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr == ("rosed: vim is not installed, and no other editor is installed; type: sudo apt-get "
-                           "install nano\n")
+    assert done.stderr == ("rosed: vim is not installed, and no other editor is installed; type: "
+                           "sudo apt-get install nano\n")

@@ -46,8 +46,8 @@ def tell(old, new, frame):
     if old in _told:
         return
     _told.add(old)
-    print(translated(f"{frame.f_code.co_filename}:{frame.f_lineno}: {old} is an old name: write {new}"),
-          file=sys.stderr, flush=True)
+    where = f"{frame.f_code.co_filename}:{frame.f_lineno}"
+    print(translated(f"{where}: {old} is an old name: write {new}"), file=sys.stderr, flush=True)
 
 
 def put_back(module, find):

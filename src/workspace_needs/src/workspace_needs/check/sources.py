@@ -87,7 +87,7 @@ def _fault(line: bytes, path: Path) -> str:
                 f"{command}")
     if not line.startswith(b"#!"):
         return (f"it has no #!, so that rosrun starts it as a shell script; {PYTHON}"
-                if path.suffix == ".py" else "")
+                if path.suffix == ".py" and not line.startswith(b"\x7fELF") else "")
     if line.endswith(b"\r"):
         command = rf"sed -i 's/\r$//' {shlex.quote(str(path))}"
         return f"it ends as lines do on Windows, so that no interpreter is found; type: {command}"
