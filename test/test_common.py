@@ -134,11 +134,14 @@ def test_a_connection_that_is_reset_again_and_again_is_no_network(
               "'ProtocolError('Connection aborted.', ConnectionResetError(104))': /simple/a/\n")
     (tmp_path / "pip.log").write_text("".join(map(broken.format, retries))
                                       + "ERROR: No matching distribution found for a==1\n")
+    (tmp_path / "venv-unfinished").touch()
     done = subprocess.run(
         ["bash", "-c", ". scripts/common.sh; . scripts/setup/logged.sh; . scripts/setup/python.sh;"
          f" fail() {{ echo \"setup: $1\"; exit 1; }}; state={tmp_path}; pip_failed install"],
         cwd=ROOT, text=True, capture_output=True, check=False)
     assert done.returncode == 1 and done.stdout.startswith(said), done
+    # Without a network nothing was installed: the environment stays, and need not be made again.
+    assert (tmp_path / "venv-unfinished").exists() is ("no network" not in said)
 
 
 def test_a_method_that_is_not_there_is_one_line():

@@ -10,6 +10,8 @@ import cv2
 import numpy as np
 import pytest
 
+from run_session.failure import RunError
+
 ROOT = Path(__file__).resolve().parent.parent
 TOOL = ROOT / "tools/makers"
 sys.path.append(str(TOOL))
@@ -57,3 +59,45 @@ def test_a_folder_that_cannot_be_made_is_one_line():
     assert done.returncode == 1
     assert done.stderr.startswith("makers: /dev/null/meshes/src/lessons/") and (
         len(done.stderr.splitlines()) == 1)
+
+
+@pytest.fixture
+def names(tmp_path, monkeypatch):
+    """The maker of packages that are only a name, in a repository of one table."""
+    maker = importlib.import_module("name_packages")
+    monkeypatch.setattr(maker, "ROOT", tmp_path)
+    (tmp_path / "src/compat").mkdir(parents=True)
+
+    def write(text):
+        (tmp_path / "src/compat/names.yaml").write_text(text)
+        return maker
+
+    return write
+
+
+def test_a_name_is_a_package_with_what_it_hands_on_and_what_does_its_work(names):
+    made = names("[{description: a < b, build: [c], run: [d], names: {n: 1.2.3}}]").files()
+    package, cmake = (data.decode() for data in made.values())
+    assert list(made) == [f"src/compat/names/n/{file}" for file in ("package.xml",
+                                                                    "CMakeLists.txt")]
+    assert "<name>n</name>" in package and "<version>1.2.3</version>" in package
+    assert "a &lt; b" in package
+    assert "<depend>c</depend>\n  <exec_depend>d</exec_depend>" in package
+    assert "COMPONENTS c)\ncatkin_package(CATKIN_DEPENDS c)" in cmake
+
+
+def test_a_folder_whose_name_is_gone_is_stale(names, tmp_path):
+    for folder in ("old", "n"):
+        (tmp_path / "src/compat/names" / folder).mkdir(parents=True)
+    maker = names("[{description: a, names: {n: 1.2.3}}]")
+    assert maker.stale() == [tmp_path / "src/compat/names/old"]
+
+
+@pytest.mark.parametrize(("text", "said"), [
+    ("[{description: a, nmes: {n: 1.2.3}}]", "unknown key 'nmes'"),
+    ("[{description: a, names: {n: 1.2}}]", "names: must be upstream's version by package"),
+    ("[{description: a, names: {n: 1.2.3}}, {description: b, names: {n: 1.2.3}}]", "n stands"),
+    ("a: b", "must be a list of groups of names"), ("[a]", "must be a list of groups of names")])
+def test_a_wrong_table_is_one_line(names, text, said):
+    with pytest.raises(RunError, match=f"src/compat/names.yaml: {said}"):
+        names(text).files()

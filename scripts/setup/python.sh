@@ -17,7 +17,8 @@ python_environment() {
 
 pip() { env -u PIP_USER -u PIP_TARGET -u PIP_PREFIX "$venv/bin/python3" -I -m pip "$@" --no-input --disable-pip-version-check --no-deps; }
 pip_failed() {
-  ! network_failed pip || fail $"no network: pip cannot reach its package index (.setup/pip.log says more); connect and run this again"
+  # pip downloads all before it installs any, so that the environment is as it was.
+  ! network_failed pip || { rm -f "$state/venv-unfinished"; fail $"no network: pip cannot reach its package index (.setup/pip.log says more); connect and run this again"; }
   fail_with_log $"pip $1 failed" pip
 }
 python_packages() {

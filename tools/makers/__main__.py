@@ -42,7 +42,7 @@ def main() -> int:
             for path, data in maker.files().items():
                 if replace_file(options.out / path, data):
                     print(f"{options.out / path}: {len(data)} bytes")
-            for folder in getattr(maker, "stale", list)():
+            for folder in getattr(maker, "stale", list)() if options.out == ROOT else ():
                 shutil.rmtree(folder)
         except OSError as error:
             print(f"makers: {error.filename}: {error.strerror}", file=sys.stderr)

@@ -57,10 +57,10 @@ def files() -> dict[str, bytes]:
     made: dict[str, bytes] = {}
     for table in sorted(ROOT.glob(TABLES)):
         groups = read_yaml(table)
-        if not isinstance(groups, list):
+        if not isinstance(groups, list) or not all(isinstance(each, dict) for each in groups):
             raise RunError(f"{table}: must be a list of groups of names")
         for values in groups:
-            group = to_record(Names, {"build": [], "run": [], "front": ""} | dict(values), table)
+            group = to_record(Names, {"build": [], "run": [], "front": ""} | values, table)
             for name, version in group.names.items():
                 folder = f"{table.parent.relative_to(ROOT)}/names/{name}"
                 if f"{folder}/package.xml" in made:

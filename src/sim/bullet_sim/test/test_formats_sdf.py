@@ -5,7 +5,7 @@ import math
 import pytest
 
 from bullet_sim.description import Box, Inertial, Plane, Surface
-from bullet_sim.errors import FormatError, ResourceNotFound
+from bullet_sim.errors import ResourceNotFound
 from bullet_sim.formats.loading import load_light, load_model
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.source import NEWEST_SDF, sdf_version
@@ -166,7 +166,7 @@ def test_database_text_brings_in_the_included_model():
 def test_database_text_of_a_missing_model_is_an_error():
     text = """<sdf version="1.4"><world name="w">
         <include><uri>model://gone</uri></include></world></sdf>"""
-    with pytest.raises(ResourceNotFound, match="^model://gone not found"):
+    with pytest.raises(ResourceNotFound, match=r"^model://gone not found"):
         load_model(text, NO_FILES)
 
 
