@@ -82,14 +82,12 @@ def test_the_first_row_of_a_texture_lies_at_plus_y(tmp_path):
     assert (u[0], v[0]) == (pytest.approx(-0.3), pytest.approx(-0.5))
 
 
-def test_stripes_finer_than_a_pixel_come_out_as_their_mean(tmp_path):
+def test_stripes_finer_than_a_pixel_are_not_compared(tmp_path):
     colours = np.zeros((512, 512, 3), np.uint8)
     colours[:, ::2] = 200
     picture = analytic.render(
-        world(floor(texture(tmp_path / "stripes.png", colours), 9.0)), view(DOWN, 64, 48)
-    )
-    assert picture.rgb[10:-10, 10:-10] == pytest.approx(100, abs=30)
-    assert not picture.clear[24, 32]  # a filter may see it otherwise: not compared
+        world(floor(texture(tmp_path / "stripes.png", colours), 9.0)), view(DOWN, 64, 48))
+    assert not picture.clear.any()  # a filter may see them otherwise
 
 
 def test_pixels_near_an_edge_are_not_compared_and_others_are(tmp_path):

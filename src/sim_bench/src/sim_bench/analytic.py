@@ -1,10 +1,11 @@
 """The course's picture worked out ray by ray: what a perfect renderer would give.
 
-A ray through each pixel is cut with the floor's planes; the texture is averaged over many points of
-the pixel, and lit as Gazebo lights it: emissive + ambient x the scene's ambient + the sum over
-directional lights of diffuse x diffuse x cosine, at most 1, times the texture. Highlights, which
-are less than half a grey level on these floors, and the robot, which its camera does not see, are
-left out. Nothing here is shared with the renderer but the description of the world.
+A ray through the middle of each pixel is cut with the floor's planes; the texture there is lit as
+Gazebo lights it: emissive + ambient x the scene's ambient + the sum over directional lights of
+diffuse x diffuse x cosine, at most 1, times the texture. Pixels with an edge near them, which would
+have to be averaged, are not compared. Highlights, which are less than half a grey level on these
+floors, and the robot, which its camera does not see, are left out. Nothing here is shared with the
+renderer but the description of the world.
 """
 
 from __future__ import annotations
@@ -18,7 +19,6 @@ from bullet_sim.description import Plane, WorldDescription
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.rendering.frame import CameraView
 
-SAMPLES = 4  # of a pixel, in a column and in a row; where there is no edge more make no difference
 # A trilinear texture filter reaches three of the pixel's longest sides on the floor to every side:
 # its coarser level has texels of up to two sides, and takes in one and a half of them.
 FILTER_REACH = 3.0
@@ -40,10 +40,6 @@ class FloorPlane:
         yaw = self.pose.rpy()[2]
         dx, dy = x - self.pose.position[0], y - self.pose.position[1]
         return np.cos(yaw) * dx + np.sin(yaw) * dy, np.cos(yaw) * dy - np.sin(yaw) * dx
-
-    def inside(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Which of these points of the plane lie in the rectangle."""
-        return (np.abs(u) <= self.size[0] / 2) & (np.abs(v) <= self.size[1] / 2)
 
     def look_up(self, image: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """A picture of the plane, bilinearly, at points of the plane (2-D arrays)."""
@@ -75,11 +71,32 @@ def floor_planes(description: WorldDescription) -> list[FloorPlane]:
 
 
 def render(description: WorldDescription, view: CameraView) -> AnalyticPicture:
-    """The floor and the background as a camera above it sees them."""
-    planes, size = floor_planes(description), _pixel_size(view)
-    background = 255 * np.array(description.scene.background[:3], np.float32)
-    rgb = np.stack([_row_colours(planes, view, row, background) for row in range(view.height)])
-    return AnalyticPicture(rgb, _clear(planes, view, size))
+    """The floor and the background as a camera above it sees them.
+
+    Clear is a pixel with no edge, of a texture or of a plane, within a filter's reach, and not
+    within two of where the floor's first pixel is.
+    """
+    size, centres = _pixel_size(view), np.indices((view.height, view.width)) + 0.5
+    x, y, met = floor_points(view, centres[1], centres[0])
+    rgb = np.full((*x.shape, 3), 255 * np.array(description.scene.background[:3]), np.float32)
+    nearest, free = np.full(x.shape, np.inf), met
+    for plane in floor_planes(description):
+        u, v = plane.local(x, y)
+        outside = np.maximum(np.abs(u) - plane.size[0] / 2, np.abs(v) - plane.size[1] / 2)
+        nearest = np.minimum(nearest, np.abs(outside))
+        here = free & (outside <= 0)
+        seen = 255.0
+        if plane.texture is not None:
+            seen = plane.look_up(plane.texture, u, v)[here]
+            distance = plane.look_up(plane.edge_distance, u, v)
+            nearest = np.where(outside <= 0, np.minimum(nearest, distance), nearest)
+        rgb[here] = seen * plane.light
+        free = free & ~here
+    sky = ~met & ~np.isfinite(size)
+    with np.errstate(invalid="ignore"):
+        clear = sky | (nearest > FILTER_REACH * size)
+    floor, around = met.astype(np.uint8), np.ones((5, 5), np.uint8)
+    return AnalyticPicture(rgb, clear & (cv2.dilate(floor, around) == cv2.erode(floor, around)))
 
 
 def difference(picture: np.ndarray, analytic: AnalyticPicture) -> np.ndarray:
@@ -140,39 +157,3 @@ def _pixel_size(view: CameraView) -> np.ndarray:
     longest = np.maximum(np.maximum(along[:, 1:], along[:, :-1]), across)
     met = met[:-1] & met[1:]
     return np.where(met[:, 1:] & met[:, :-1], longest, np.inf)
-
-
-def _row_colours(planes: list[FloorPlane], view: CameraView, row: int,
-                 background: np.ndarray) -> np.ndarray:
-    """(width, 3) float32: the mean of SAMPLES x SAMPLES points of each pixel."""
-    inside = (np.arange(view.width * SAMPLES) + 0.5) / SAMPLES
-    x, y, free = floor_points(view, *np.meshgrid(inside, row + inside[:SAMPLES]))
-    colours = np.broadcast_to(background, (*x.shape, 3)).copy()
-    for plane in planes:
-        u, v = plane.local(x, y)
-        here = free & plane.inside(u, v)
-        if here.any():
-            seen = 255.0 if plane.texture is None else plane.look_up(plane.texture, u, v)[here]
-            colours[here] = seen * plane.light
-            free &= ~here
-    return colours.reshape(SAMPLES, view.width, SAMPLES, 3).mean(axis=(0, 2))
-
-
-def _clear(planes: list[FloorPlane], view: CameraView, size: np.ndarray) -> np.ndarray:
-    """Which pixels have no edge, of a texture or of a plane, within a filter's reach, and are not
-    within two of where the floor's first pixel is: (height, width) bool."""
-    centres = np.meshgrid(np.arange(view.width) + 0.5, np.arange(view.height) + 0.5)
-    x, y, met = floor_points(view, *centres)
-    nearest = np.full(x.shape, np.inf)
-    for plane in planes:
-        u, v = plane.local(x, y)
-        border = np.maximum(np.abs(u) - plane.size[0] / 2, np.abs(v) - plane.size[1] / 2)
-        nearest = np.minimum(nearest, np.abs(border))
-        if plane.edge_distance is not None:
-            distance = plane.look_up(plane.edge_distance, u, v)
-            nearest = np.where(plane.inside(u, v), np.minimum(nearest, distance), nearest)
-    sky = ~met & ~np.isfinite(size)
-    with np.errstate(invalid="ignore"):
-        clear = sky | (nearest > FILTER_REACH * size)
-    floor, around = met.astype(np.uint8), np.ones((5, 5), np.uint8)
-    return clear & (cv2.dilate(floor, around) == cv2.erode(floor, around))

@@ -72,28 +72,25 @@ def _drive_a_circle(course: CourseWorld, waffle: Model) -> None:
         course.world.step(DRIVE_STEPS)
 
 
-def _compare(
-    state: str, course: CourseWorld, waffle: Model, bare: Callable[[], None], settings: Settings
-) -> list[Figure]:
+def _compare(state: str, course: CourseWorld, waffle: Model, bare: Callable[[], None],
+             settings: Settings) -> list[Figure]:
     kinds = {"bare": bare, "ours": course.world.step}
-    times: dict[str, list[float]] = {kind: [] for kind in kinds}
+    runs = []
     for _ in range(settings.runs(RUNS)):
-        blocks: dict[str, list[float]] = {kind: [] for kind in kinds}
-        for _ in range(BLOCKS):
-            for kind, step in kinds.items():
-                _keep_awake(waffle)
-                blocks[kind].append(1e6 * _timed(step, BLOCK))
-        for kind, values in blocks.items():
-            times[kind].append(statistics.median(values))
+        blocks = [[_timed_awake(waffle, step) for step in kinds.values()] for _ in range(BLOCKS)]
+        runs.append([1e6 * statistics.median(block) for block in zip(*blocks)])
+    times = dict(zip(kinds, zip(*runs)))
     found = [figure(f"step.{kind}.{state}", "us", values) for kind, values in times.items()]
     compared = ratio(f"ratio.{state}", times["ours"], times["bare"])
     check_same_work(state, compared.median)
     return [*found, compared]
 
 
-def _keep_awake(waffle: Model) -> None:
-    """Whatever is done to a body from outside ends a world's rest; no force moves nothing."""
+def _timed_awake(waffle: Model, step: Callable[[], None]) -> float:
+    """Seconds of a step. Whatever is done to a body from outside ends a world's rest; no force
+    moves nothing."""
     next(iter(waffle.links.values())).apply_force((0.0, 0.0, 0.0))
+    return _timed(step, BLOCK)
 
 
 def _timed(step: Callable[[], None], steps: int) -> float:
