@@ -45,8 +45,8 @@ def draw_picture(renderer: Renderer, seed: int) -> Picture:
 
 
 def draw_stage(renderer: Renderer, stage: Stage, seed: int) -> Picture:
-    """The image of a stage; the seed is for the noise, and must differ between stages."""
-    rgb = renderer.draw(_scene(stage, seed), stage.view).rgb
+    """The image of a stage; the seed is for the noise."""
+    rgb = renderer.draw(_scene(stage), stage.view).rgb
     owners = renderer.draw(_flat(stage.things, stage.surroundings), stage.view).rgb[..., 0]
     labels = []
     for number, thing in enumerate(stage.things, start=1):
@@ -74,24 +74,16 @@ def _pixels_alone(renderer: Renderer, thing: Thing, view: CameraView) -> float:
     return float(np.count_nonzero(alone.rgb[..., 0])) * WIDER**2
 
 
-def _scene(stage: Stage, seed: int) -> Scene:
+def _scene(stage: Stage) -> Scene:
     scene = Scene(stage.description)
     for light in stage.lights:
         scene.add_light(light)
-    # Renderers cache a texture by name, until its size changes: use names of no other world.
-    scene.images = {f"{seed} {name}": image for name, image in stage.images.items()}
+    scene.images = stage.images
     groups = [(stage.surroundings, IDENTITY)]
     groups += [((*thing.own, *thing.support), thing.pose) for thing in stage.things]
     for number, (parts, pose) in enumerate(groups):
-        named = tuple(_renamed(part, seed) for part in parts)
-        scene.nodes[str(number), "link"] = Node(link_shape(named), pose)
+        scene.nodes[str(number), "link"] = Node(link_shape(parts), pose)
     return scene
-
-
-def _renamed(part: MeshPart, seed: int) -> MeshPart:
-    if part.material.texture is None:
-        return part
-    return replace(part, material=replace(part.material, texture=f"{seed} {part.material.texture}"))
 
 
 def _flat(things: list[Thing], surroundings: tuple[MeshPart, ...]) -> Scene:

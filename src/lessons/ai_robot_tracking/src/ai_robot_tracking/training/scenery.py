@@ -28,9 +28,9 @@ FLOOR_SIDE = 40.0  # m
 
 def surroundings(rng: np.random.Generator, room: float, images: Images) -> tuple[MeshPart, ...]:
     """A floor, and usually walls, about `room` m from the camera at the origin."""
-    images["floor"] = pattern(rng, FLOOR_PX)
+    ground = covered(images, pattern(rng, FLOOR_PX))
     side = FLOOR_SIDE if rng.random() < 0.3 else rng.uniform(1.0, 2.5) * room
-    parts = [plane(side, 0.0, coloured((1.0, 1.0, 1.0), texture="floor"))]
+    parts = [plane(side, 0.0, ground)]
     if side < FLOOR_SIDE:
         parts.append(plane(FLOOR_SIDE, -0.02, coloured(any_colour(rng))))
     if rng.random() < 0.75:
@@ -80,7 +80,7 @@ def distractor(rng: np.random.Generator, images: Images) -> Thing:
 def _box(rng: np.random.Generator, images: Images) -> Thing:
     size = rng.uniform(0.1, 1.0, 3) * rng.uniform(0.4, 1.8)
     if rng.random() < 0.35:
-        material = covered(images, "box", pattern(rng))
+        material = covered(images, pattern(rng))
     else:
         material = coloured(any_colour(rng, saturated=rng.random() < 0.5))
     part = box(tuple(size.tolist()), (0, 0, size[2] / 2), material)
@@ -141,7 +141,7 @@ def _gate(rng: np.random.Generator, images: Images) -> Thing:
 
 def _walls(rng: np.random.Generator, room: float, images: Images) -> list[MeshPart]:
     """Walls around the camera, some with a picture."""
-    images["wall"] = pattern(rng)
+    paper = covered(images, pattern(rng))
     high, turn = rng.uniform(*WALL_HEIGHT), rng.uniform(-0.6, 0.6)
     parts = []
     for number in range(4):
@@ -150,17 +150,15 @@ def _walls(rng: np.random.Generator, room: float, images: Images) -> list[MeshPa
         yaw = turn + number * math.pi / 2
         away = room * (1.0 if number == 0 else rng.uniform(1.0, 1.6))
         at = (away * math.cos(yaw), away * math.sin(yaw), high / 2)
-        texture = "wall" if rng.random() < 0.7 else None
-        colour = (1.0, 1.0, 1.0) if texture else any_colour(rng)
-        parts.append(box((0.1, 3.6 * room, high), at, coloured(colour, texture=texture),
-                         (0, 0, yaw)))
+        material = paper if rng.random() < 0.7 else coloured(any_colour(rng))
+        parts.append(box((0.1, 3.6 * room, high), at, material, (0, 0, yaw)))
         if rng.random() < 0.4:
             parts.append(_picture(rng, images, away, yaw, high))
     return parts
 
 
 def _picture(rng, images: Images, away: float, yaw: float, high: float) -> MeshPart:
-    picture = covered(images, "picture", pattern(rng))
+    picture = covered(images, pattern(rng))
     aside, size = rng.uniform(-1, 1) * away, rng.uniform(0.2, 0.9) * high
     on_wall = Pose.from_xyz_rpy((0, 0, 0), (0, 0, yaw))
     at = on_wall.transform((away - 0.06, aside, high * 0.5))

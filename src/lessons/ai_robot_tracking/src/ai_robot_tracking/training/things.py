@@ -7,6 +7,7 @@ Their parts are triangle meshes, placed and coloured.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -24,6 +25,7 @@ from bullet_sim.rendering.scene import LinkShape
 ROUND_SIDES = 32
 Rgb = tuple[float, float, float]  # each 0..1
 Images = dict[str, np.ndarray]  # textures by name, as in scenes
+_numbers = itertools.count()
 
 
 @dataclass(frozen=True)
@@ -44,9 +46,12 @@ def coloured(colour: Rgb, glow: float = 0.0, texture: str | None = None) -> Mate
     return Material(ambient=rgba, diffuse=rgba, emissive=glowing, texture=texture)
 
 
-def covered(images: Images, name: str, image: np.ndarray) -> Material:
-    """A surface that shows this image, which is added to `images`."""
-    name = f"{name} {len(images)}"
+def covered(images: Images, image: np.ndarray) -> Material:
+    """A surface that shows this image, which is added to `images`.
+
+    Renderers cache a texture by name, until its size changes: no other world has the name.
+    """
+    name = f"image {next(_numbers)}"
     images[name] = image
     return coloured((1.0, 1.0, 1.0), texture=name)
 
@@ -189,7 +194,7 @@ def cylinder(rng: np.random.Generator, images: Images) -> Thing:
     radius = rng.uniform(0.05, 0.45)
     length = min(radius * rng.uniform(1.2, 6.0), 1.9)
     if rng.random() < 0.1:
-        material = covered(images, "cylinder", pattern(rng))
+        material = covered(images, pattern(rng))
     elif rng.random() < 0.35:
         material = coloured(any_red(rng))
     else:
@@ -228,7 +233,7 @@ def stop_sign(rng: np.random.Generator, images: Images) -> Thing:
     """A red octagon with its word, on a post; the post is not boxed."""
     radius = rng.uniform(0.2, 0.42) if rng.random() < 0.7 else rng.uniform(0.04, 0.2)
     high = radius * rng.uniform(2.0, 7.5)
-    front = covered(images, "stop", stop_face(rng))
+    front = covered(images, stop_face(rng))
     grey = coloured((0.5, 0.5, 0.52))
     own = plate(8, radius, (0.12 * radius, 0, high), front, grey)
     return Thing("stop sign", own, (post(rng, radius, high),), Pose(), radius)
