@@ -186,7 +186,7 @@ def is_text(text: str) -> bool:
 
 NO_TEXT = re.compile(
     r"^<[!?/]|^(\{\d+\} *)?<\w+( name=\{0\})?( [\w:]+=\"|>?$|>[^,]*</)"
-    r"|[\\^]|\|(?! )|(?<! )\||\w\[\w|^import |^# |^/|^~")
+    r"|[\\^]|\|(?! )|(?<! )\||\w\[\w|^import |^# |^/|^~\S*$")
 
 
 def python_texts() -> dict[str, list[str]]:

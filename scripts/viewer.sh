@@ -29,7 +29,8 @@ if ! choose_master; then
   exit 1
 fi
 mkdir -p "$root/out"
-roslaunch learning_topic 0course.launch gui:=false > "$root/out/viewer.log" 2>&1 < /dev/null &
+# Each ends with this shell, also one that is killed.
+setpriv --pdeathsig INT roslaunch learning_topic 0course.launch gui:=false > "$root/out/viewer.log" 2>&1 < /dev/null &
 launched=$!
 page=
 trap 'kill -INT $launched $page 2> /dev/null || true; wait $launched $page || true' EXIT
@@ -50,7 +51,7 @@ if [ -n "$running" ]; then
   wait "$launched" || true
 else
   # In the background: otherwise this shell would react to a container's SIGTERM only after the page has ended.
-  roslaunch sim_viewer viewer.launch "${arguments[@]}" &
+  setpriv --pdeathsig INT roslaunch sim_viewer viewer.launch "${arguments[@]}" &
   page=$!
   wait -n "$launched" "$page" || true
   kill -0 "$launched" 2> /dev/null && exit 1  # the page has said why it ended

@@ -75,6 +75,8 @@ def test_no_manager():
     assert "A controller manager answers in: /arm, /racecar " in client.absence(
         service, ["/arm", "/racecar"])
     assert "no controller manager in any namespace" in client.absence(service, [])
+    assert client.absence(service, ["/car"]).endswith(
+        " yet: the controller manager in /car is starting")
 
 
 def test_upstreams_options():

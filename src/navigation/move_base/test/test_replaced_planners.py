@@ -5,7 +5,7 @@ import pytest
 import rospy
 
 from move_base import plugin
-from move_base.global_planners import Navfn
+from move_base.global_planners import GOAL_OFF, START_OFF, Navfn
 from move_base.local_planners import Dwa, Situation
 from nav_algorithms.costmap.costs import Costmap
 
@@ -39,6 +39,17 @@ def no_master(monkeypatch):
 
 COSTMAP = Costmap(np.zeros((40, 40), np.uint8), 0.1, (0.0, 0.0))
 START, GOAL = np.array([1.0, 1.0, 0.0]), np.array([3.0, 3.0, 0.0])
+
+
+@pytest.mark.parametrize(("start", "goal", "said"), [
+    (START, GOAL, []), (START, np.array([9.0, 1.0, 0.0]), [GOAL_OFF]),
+    (np.array([-1.0, 1.0, 0.0]), GOAL, [START_OFF])])
+def test_a_start_or_goal_off_the_costmap_is_said(monkeypatch, start, goal, said):
+    told = []
+    monkeypatch.setattr(rospy, "logwarn_throttle_identical", lambda _period, why: told.append(why))
+    planner = Navfn(None)
+    path = planner.plan(COSTMAP, None, start, goal, "map")
+    assert (path is None) is bool(said) and told == said
 
 
 @pytest.mark.parametrize("replaced", [False, True])

@@ -237,3 +237,10 @@ def test_world_in_another_encoding_is_read(tmp_path, resources):
     file = tmp_path / "gbk.world"
     file.write_bytes('<sdf version="1.6"><!-- 赛道 --><world name="w"/></sdf>'.encode("gbk"))
     assert load_world(file, resources).name == "w"
+
+
+def test_a_missing_world_of_a_folder_is_looked_for_among_its_neighbours(resources, tmp_path):
+    (tmp_path / "moving.world").touch()
+    with pytest.raises(ResourceNotFound, match=r"did you mean \S*/moving\.world") as caught:
+        resources.find_world(str(tmp_path / "movng.world"))
+    assert "empty.world" not in str(caught.value)

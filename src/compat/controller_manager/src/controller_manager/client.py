@@ -100,6 +100,9 @@ def managers() -> list[str]:
 
 def absence(service: str, namespaces: list[str]) -> str:
     """Why nothing answers under a manager's service name, and what to type next."""
+    own = service.rpartition("/controller_manager/")[0] or "/"
+    if own in namespaces:
+        return f"Nobody offers {service} yet: the controller manager in {own} is starting"
     if namespaces:
         there = ", ".join(namespaces)
         return (f"Nobody offers {service}. A controller manager answers in: {there} "

@@ -16,6 +16,13 @@ from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.global_planning import astar, carrot, hybrid_astar, navfn
 from nav_nodes.messages import stamped_pose
 
+# As upstream's planners say it.
+START_OFF = ("The robot's start position is off the global costmap. Planning will always fail, are "
+             "you sure the robot has been properly localized?")
+GOAL_OFF = ("The goal sent to the global planner is off the global costmap. Planning will always "
+            "fail to this goal.")
+PERIOD = 10.0  # s between two of these lines
+
 
 def path_message(path: np.ndarray, frame: str, stamp: rospy.Time) -> Path:
     """nav_msgs/Path of poses (N, 3)."""
@@ -52,6 +59,9 @@ class GlobalPlanner(Plugin, ABC):
              goal: np.ndarray, frame: str) -> np.ndarray | None:
         """Path (N, 3) in the costmap's `frame`, or None; publishes it (None as an empty path)."""
         path = self._plan(costmap, footprint, start, goal)
+        for pose, why in ((start, START_OFF), (goal, GOAL_OFF)) if path is None else ():
+            if not costmap.contains(costmap.cells_of(pose[:2])):
+                rospy.logwarn_throttle_identical(PERIOD, why)
         with self._publishing:
             if self._topic is not None and self._topic.get_num_connections():
                 self._topic.publish(path_message(np.zeros((0, 3)) if path is None else path, frame,

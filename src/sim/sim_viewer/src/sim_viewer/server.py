@@ -61,15 +61,18 @@ class Server:
         """Bind and serve; returns the port, the next free one if that one is taken, or NoPort."""
         await self._runner.setup()
         options = self._options
-        last = min(options.port + PORTS_TRIED, 65536)
+        last, denied = min(options.port + PORTS_TRIED, 65536), False
         for port in range(options.port, last):
             try:
                 await web.TCPSite(self._runner, options.address, port).start()
                 return port
             except OSError as error:
+                denied = denied or error.errno == errno.EACCES
                 if error.errno not in (errno.EADDRINUSE, errno.EACCES):
                     raise NoPort(f"cannot listen at {options.address}: {error.strerror}; "
                                  "address:=127.0.0.1 always works") from None
+        if denied:
+            raise NoPort(f"port {options.port} is root's; give one from 1024 with port:=")
         raise NoPort(f"ports {options.port} to {last - 1} are all taken; give another with port:=")
 
     async def close(self) -> None:

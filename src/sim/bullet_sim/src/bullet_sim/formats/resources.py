@@ -88,8 +88,10 @@ class Resources:
         try:
             return self._first(name, self._plain_candidates(name, Path.cwd()))
         except ResourceNotFound as error:
-            there = {f"worlds/{path.name}" for folder in self.resource_paths
-                     for path in (folder / "worlds").glob("*.world")}
+            there = {str(path) for path in Path(name).parent.glob("*.world")}
+            if not os.path.isabs(name) or not there:
+                there = {f"worlds/{path.name}" for folder in self.resource_paths
+                         for path in (folder / "worlds").glob("*.world")}
             raise ResourceNotFound(name, error.searched, sorted(there)) from None
 
     def package_folder(self, package: str) -> Path:
