@@ -1,7 +1,7 @@
 """Packages that end in a raw error elsewhere: built unedited, or left out, as `check` said before.
 
-`workspaces/errors` has one package for each cause that stopped public packages. The C++ is compiled
-once, by catkin_make; the other tools build what needs no compiler.
+`workspaces/errors.yaml` has one package for each cause that stopped public packages. The C++ is
+compiled once, by catkin_make; the other tools build what needs no compiler.
 """
 
 import os
@@ -11,11 +11,22 @@ import subprocess
 from pathlib import Path
 
 import pytest
+import yaml
 
 pytestmark = pytest.mark.processes
 
 ROOT = Path(__file__).resolve().parent.parent
-ERRORS = ROOT / "test/workspaces/errors"
+ERRORS = yaml.safe_load((ROOT / "test/workspaces/errors.yaml").read_text(encoding="utf-8"))
+PACKAGE = """<?xml version="1.0"?>
+<package format="2">
+  <name>{name}</name>
+  <version>0.1.0</version>
+  <description>{cause}</description>
+  <maintainer email="learner@example.com">learner</maintainer>
+  <license>BSD</license>
+  <buildtool_depend>catkin</buildtool_depend>
+{depends}</package>
+"""
 LIMIT = 600.0  # s, wall, on a busy machine
 TOOLS = {
     "catkin_make": "catkin_make -j1 --no-color",
@@ -53,6 +64,16 @@ def in_terminal(command: str, setup: Path, home: Path) -> subprocess.CompletedPr
         env=kept | {"PATH": "/usr/local/bin:/usr/bin:/bin", "TERM": "dumb", "HOME": str(home)})
 
 
+def write_packages(source: Path) -> None:
+    """The packages of ERRORS."""
+    for name, package in ERRORS.items():
+        depends = "".join(f"  <depend>{each}</depend>\n" for each in package["depends"])
+        manifest = PACKAGE.format(name=name, cause=package["cause"], depends=depends)
+        for path, text in (package["files"] | {"package.xml": manifest}).items():
+            (source / name / path).parent.mkdir(parents=True, exist_ok=True)
+            (source / name / path).write_text(text, encoding="utf-8")
+
+
 @pytest.fixture(scope="module")
 def home(tmp_path_factory) -> Path:
     return tmp_path_factory.mktemp("home")
@@ -66,7 +87,7 @@ def checked(tmp_path_factory, home) -> str:
     kept of the first.
     """
     folder = tmp_path_factory.mktemp("catkin_ws", numbered=False)
-    shutil.copytree(ERRORS, folder / "src")
+    write_packages(folder / "src")
     done = in_terminal(f"rosrun bullet_sim_ros check {folder}", ROOT / "devel/setup.bash", home)
     shutil.rmtree(folder)
     assert done.returncode == 1, done.stdout
@@ -78,7 +99,7 @@ def built(request, tmp_path_factory, home, checked) -> tuple[Path, str, str]:
     """The workspace's folder, the tool and what it printed."""
     folder = tmp_path_factory.mktemp("catkin_ws", numbered=False)
     request.addfinalizer(lambda: shutil.rmtree(folder))
-    shutil.copytree(ERRORS, folder / "src")
+    write_packages(folder / "src")
     if request.param != "catkin_make":
         for name in COMPILED:
             shutil.rmtree(folder / "src" / name)

@@ -1,1 +1,0 @@
-inline double half(double value) { return value / 2; }

@@ -1,3 +1,0 @@
-#include <pluginlib/class_loader.h>
-
-void say() { ROS_INFO("said"); }

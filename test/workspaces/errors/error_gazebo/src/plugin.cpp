@@ -1,3 +1,0 @@
-#include <gazebo/gazebo.hh>
-
-class Plugin : public gazebo::ModelPlugin {};

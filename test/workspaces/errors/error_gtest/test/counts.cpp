@@ -1,3 +1,0 @@
-#include <gtest/gtest.h>
-
-TEST(Counts, Two) { EXPECT_EQ(2, 1 + 1); }
