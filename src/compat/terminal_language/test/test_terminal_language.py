@@ -87,6 +87,8 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
      "gmapping slam_gmapping), hector_mapping without odometry (package.xml asks for it)",
      "a: 它会缺少：Debian 里没有；gmapping 用同样的话题建图（rosrun gmapping slam_gmapping），"
      "hector_mapping 不需要里程计（package.xml 需要它）"),
+    ("mark: a.yaml: missing key 'b'; there are: course, program, points, limits",
+     "mark: a.yaml：没有键 'b'；可用的有：course, program, points, limits"),
     ("navigate: --map a.yaml: no such file; it is a map's NAME.yaml",
      "navigate: --map a.yaml：没有这个文件；应该是地图的 名字.yaml"),
     ("a.world, line 1: write &amp; for &; line 2: write b=\"...\" with quotes; taken all the same, "

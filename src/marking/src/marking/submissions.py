@@ -181,7 +181,8 @@ def unpack(source: Path, folder: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     command = ["prlimit", f"--as={MOST_MEMORY}", f"--cpu={MOST_TIME}", "--core=0",
                sys.executable, "-P", "-m", "marking.submissions", str(source), str(folder)]
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False,
+                          env=os.environ | {"LANGUAGE": "en"})  # marks.csv is in English
     if done.returncode:
         try:
             check_space(folder.parent)  # before anything is removed

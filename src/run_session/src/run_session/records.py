@@ -65,7 +65,15 @@ def read_yaml(path: Path, fault: type[Exception] = RunError) -> Any:
     except UnicodeDecodeError as error:
         raise fault(f"{path}: not a text file") from error
     except Exception as error:  # PyYAML also raises KeyError, IndexError and more
-        raise fault(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") from error
+        raise fault(f"{path}: not valid YAML: {yaml_fault(error)}") from error
+
+
+def yaml_fault(error: Exception) -> str:
+    """PyYAML's error in one line: where, and what is wrong there."""
+    if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark:
+        mark = error.problem_mark
+        return f"line {mark.line + 1}, column {mark.column + 1}: {error.problem}"
+    return " ".join(str(error).split())[:200]
 
 
 def check_keys(place: object, values: object, expected: Iterable[str],

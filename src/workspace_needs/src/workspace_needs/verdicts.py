@@ -154,8 +154,12 @@ class _Judgement:
                 continue
             if absence := self._tables.missing_header(header):
                 verdict.left_out.setdefault(file, f"it includes <{header}>: {absence.why}")
-            elif folder not in self._known:
-                self._missing(verdict, folder)
+                continue
+            answer = self._answers[folder]
+            if (folder not in self._known and not self._missing(verdict, folder)
+                    and folder.endswith("_msgs") and answer.kind not in (OURS, DEBIAN)):
+                verdict.lacks.setdefault(
+                    folder, f"{answer.why} ({file} includes <{header}>)")
 
 
 def _order(source: Path) -> list[str]:

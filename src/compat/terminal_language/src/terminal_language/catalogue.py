@@ -23,6 +23,7 @@ WORD = re.compile(r"[A-Za-z]{2,}")
 SPACED = re.compile(r"(?<=[\u4e00-\u9fff])(?: \0|\0 )(?=[\u4e00-\u9fff])")
 UNSPACED = re.compile(r"(?<=[\u4e00-\u9fff])\0+(?=[A-Za-z0-9])"
                       r"|(?<=[A-Za-z0-9])\0+(?=[\u4e00-\u9fff])")
+NAMES = re.compile(r"[\w./-]+(, [\w./-]+){2,}")  # a list of them stays as it is
 FEWEST_WORDS = 3  # of what stays English; what has fewer is a frame for other texts
 VALUE = "value\4"  # gettext's msgctxt
 LONGEST = 1000  # characters of a line
@@ -97,7 +98,7 @@ class Catalogue:
 
     def _around(self, text: str, depth: int = DEPTH) -> str | None:
         before, inner, after = AROUND.fullmatch(text).groups()
-        found = self._message(inner, depth) if inner else None
+        found = self._message(inner, depth) if inner and not NAMES.fullmatch(inner) else None
         if found is None:
             return None
         # A full-width bracket has its space within.
@@ -108,7 +109,7 @@ class Catalogue:
         name, _, rest = text.partition(": ")
         if name.isidentifier() and rest in self._exact:  # a program before its text
             return f"{self._exact.get(name, name)}: {self._exact[rest]}"
-        if name.isidentifier() and self._weight(rest) > self._weight(text):
+        if name.isidentifier() and 0 < self._weight(rest) >= self._weight(text):
             return f"{self._exact.get(name, name)}: {self._clause(rest, depth)}"
         found = self._clause(text, depth)
         parts = JOINTS.split(text)
