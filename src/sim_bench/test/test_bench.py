@@ -157,6 +157,8 @@ def test_criteria_are_of_parts_that_exist_and_have_one_bound():
     for criterion in criteria():
         assert criterion.figure.partition("/")[0] in PARTS
         assert (criterion.at_least is None) != (criterion.at_most is None)
+        if isinstance(criterion.limit, str):
+            assert criterion.limit.partition("/")[0] in ("", criterion.figure.partition("/")[0])
 
 
 def test_a_bound_itself_is_enough():
@@ -179,6 +181,19 @@ def test_what_is_missed_says_what_binds():
     assert "binds" not in acceptance_table(judge({
         "fast/no_camera.driving.real_time_factor": figure("a", "x", [31.0]),
         "fast/no_camera.driving.bare_step": figure("b", "us", [20.0])}))
+
+
+def test_the_share_of_the_limit_is_told_of_times_and_of_rates():
+    judged = judge({"growth/robots.8": figure("a", "ms", [200.0]),
+                    "growth/engine.robots.8": figure("b", "ms", [150.0]),
+                    "step/ratio.driving": figure("c", "x", [1.25]),
+                    "fast/lockstep.real_time_factor": figure("d", "x", [5.0]),
+                    "fast/lockstep.limit": figure("e", "x", [10.0]),
+                    "ros/1080p.cpu.gazebo": figure("f", "%", [70.0])})  # its limit failed
+    assert {verdict.criterion.figure: verdict.share for verdict in judged} == {
+        "growth/robots.8": 0.75, "step/ratio.driving": 0.8,
+        "fast/lockstep.real_time_factor": 0.5, "ros/1080p.cpu.gazebo": None}
+    assert "75%" in acceptance_table(judged)
 
 
 STAGES = """[INFO] stages of the work in 10 s

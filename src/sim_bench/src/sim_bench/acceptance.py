@@ -19,6 +19,7 @@ class Criterion:
     at_least: float | None = None
     at_most: float | None = None
     bound_by: tuple[str, ...] = ()  # figures, or beginnings of their names: what it cannot beat
+    limit: str | float = ""  # a figure, or a value: the best that engine and OpenGL alone allow
 
     def met(self, value: float) -> bool:
         """Whether a median is within the bound."""
@@ -37,11 +38,20 @@ class Verdict:
     criterion: Criterion
     figure: Figure
     binding: tuple[Figure, ...] = ()  # of the criterion's `bound_by`, what was measured
+    limit: float | None = None  # in the figure's unit
 
     @property
     def met(self) -> bool:
         """By the median."""
         return self.criterion.met(self.figure.median)
+
+    @property
+    def share(self) -> float | None:
+        """Of the limit, 1 where nothing but the engine and OpenGL takes time."""
+        if not self.limit:
+            return None
+        share = self.figure.median / self.limit
+        return share if self.criterion.at_most is None else 1 / share
 
 
 def criteria() -> list[Criterion]:
@@ -55,7 +65,14 @@ def judge(figures: Mapping[str, Figure]) -> list[Verdict]:
     return [
         Verdict(criterion, figures[criterion.figure], tuple(
             replace(one, name=name) for name, one in figures.items()
-            if criterion.bound_by and name.startswith(criterion.bound_by)))
+            if criterion.bound_by and name.startswith(criterion.bound_by)),
+            _limit(criterion, figures))
         for criterion in criteria()
         if criterion.figure in figures
     ]
+
+
+def _limit(criterion: Criterion, figures: Mapping[str, Figure]) -> float | None:
+    if isinstance(criterion.limit, float):
+        return criterion.limit
+    return figures[criterion.limit].median if criterion.limit in figures else None

@@ -53,6 +53,7 @@ def write_json(results: Results, path: Path) -> None:
     verdicts = [
         {"what": verdict.criterion.what, "figure": verdict.criterion.figure,
          "bound": verdict.criterion.bound, "median": verdict.figure.median, "met": verdict.met,
+         "limit": verdict.limit, "share_of_limit": verdict.share,
          "bound_by": {one.name: one.median for one in verdict.binding}}
         for verdict in results.verdicts()
     ]
@@ -73,11 +74,14 @@ def figure_table(result: PartResult) -> str:
 
 
 def acceptance_table(verdicts: Sequence[Verdict]) -> str:
-    """What was wanted, what was measured, whether that is enough, and if not, what binds."""
-    rows = [("acceptance (median)", "wanted", "measured", "unit", "")]
+    """What was wanted and measured, whether that is enough, which share of what the engine and
+    OpenGL alone allow, and what binds where it is not enough.
+    """
+    rows = [("acceptance (median)", "wanted", "measured", "unit", "", "of the limit")]
     rows += [(f"  {verdict.criterion.what}", verdict.criterion.bound,
               _short(verdict.figure.median), verdict.figure.unit,
-              "met" if verdict.met else "MISSED") for verdict in verdicts]
+              "met" if verdict.met else "MISSED",
+              "" if verdict.share is None else f"{verdict.share:.0%}") for verdict in verdicts]
     lines = [report.table(rows, left=(0, 3, 4))]
     for verdict in verdicts:
         if not verdict.met and verdict.binding:

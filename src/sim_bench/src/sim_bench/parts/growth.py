@@ -8,14 +8,16 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 
 from bullet_sim.model import Model
 from bullet_sim.pose import Pose
 from bullet_sim.sensors.laser import Laser
 from bullet_sim.sensors.odometry import true_odometry
 from bullet_sim.world import World
-from sim_bench.course import CourseWorld, drive_of, sensor_with
+from sim_bench.course import drive_of, sensor_with
 from sim_bench.figures import Figure, figure
+from sim_bench.parts.step import open_course
 from sim_bench.settings import Settings, say
 
 ROBOTS = 8
@@ -27,16 +29,17 @@ SPACING = 1.0  # m
 
 
 def measure(settings: Settings) -> list[Figure]:
-    """Wall milliseconds of a simulated second, and what stepping the engine takes of it."""
+    """Wall ms of a simulated second, what our steps take of it, and what the engine alone takes."""
     say(f"{ROBOTS} robots")
-    course = CourseWorld()
+    course, bare = open_course()
     robots = [_Robot(course.world, course.spawn_waffle(f"waffle{i}", Pose((x, y, 0.0))))
               for i, (x, y) in enumerate([(0.0, 0.0), *grid(ROBOTS - 1)])]
     _second(course.world, robots)  # until all are up to speed
-    runs = [_second(course.world, robots) for _ in range(settings.runs(RUNS))]
+    runs = [(*_second(course.world, robots), _bare_second(bare))
+            for _ in range(settings.runs(RUNS))]
     course.close()
-    return [figure(name, "ms a simulated s", values)
-            for name, values in zip((f"robots.{ROBOTS}", f"physics.robots.{ROBOTS}"), zip(*runs))]
+    names = (f"robots.{ROBOTS}", f"physics.robots.{ROBOTS}", f"engine.robots.{ROBOTS}")
+    return [figure(name, "ms a simulated s", values) for name, values in zip(names, zip(*runs))]
 
 
 def grid(count: int, spacing: float = SPACING) -> list[tuple[float, float]]:
@@ -71,3 +74,11 @@ def _second(world: World, robots: list[_Robot]) -> tuple[float, float]:
             robot.update(sweep=number % SWEEP_EVERY == 0)
     took = time.perf_counter() - start
     return took * 1e3, (world.profiler.totals()["physics"] - stepped) * 1e3
+
+
+def _bare_second(bare: Callable[[], None]) -> float:
+    """Wall ms of the same steps by the engine alone; the wheels keep their last command."""
+    start = time.perf_counter()
+    for _ in range(sum(STEPS_BETWEEN)):
+        bare()
+    return (time.perf_counter() - start) * 1e3

@@ -5,19 +5,25 @@ window of wall time: one launch is cut into windows, together about a lap. A lap
 does it, with film and scoring, comes first. Frames are counted and dated in the lesson's own
 process (see `follower`). Processor time is that of each node's process and its children, in percent
 of one core; "spare" is what all that was started leaves of the machine's cores; a stage is what the
-simulator does for a frame, by its name.
+simulator does for a frame, by its name. `limit.cpu` is what llvmpipe and the engine's bare steps
+take of the simulator's.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import statistics
+import time
+from pathlib import Path
 
 import numpy as np
 
 from run_session import simulator
+from run_session.processes import processes
 from sim_bench.figures import Figure, figure
 from sim_bench.follower import FOLLOWER, IMAGES, Follower, Seen, frame_ages, launch_course
+from sim_bench.parts.step import STEP, bare_step_time
 from sim_bench.ros_run import (
     PERCENT,
     PROFILE,
@@ -55,9 +61,24 @@ def measure(settings: Settings) -> list[Figure]:
 
 def _drive(run: RosRun, name: str, size: tuple[int, int]) -> list[Figure]:
     follower = Follower(run, size, PROFILE)
+    began, spent = time.monotonic(), _drawing_time()
     windows = run.windows(WINDOWS[name], WINDOW, WARM_UP)
+    drawing = (_drawing_time() - spent) / (time.monotonic() - began)
     return [*drive_figures(name, follower.end(), windows),
+            figure(f"{name}.limit.cpu", PERCENT, [100 * (drawing + bare_step_time() / STEP)]),
             *stage_figures(name, stages(follower.launched.log, turn="send"))]
+
+
+def _drawing_time() -> float:
+    """s of processor time that the simulator's threads of llvmpipe have taken so far."""
+    ticks = 0
+    for process in processes():
+        if process.name == SIMULATOR:
+            for thread in Path(f"/proc/{process.pid}/task").iterdir():
+                _, name, rest = re.split(r"[()]", (thread / "stat").read_text(), maxsplit=2)
+                if name.startswith("llvmpipe"):
+                    ticks += sum(map(int, rest.split()[11:13]))
+    return ticks / os.sysconf("SC_CLK_TCK")
 
 
 def drive_figures(name: str, seen: Seen, windows: list[Window]) -> list[Figure]:

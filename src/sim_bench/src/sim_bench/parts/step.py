@@ -23,6 +23,7 @@ from sim_bench.settings import Settings
 
 RUNS = 11
 BLOCK, BLOCKS = 200, 5  # steps between two nudges (too few to fall asleep); blocks of a run
+STEP = 0.001  # s, of the course's world
 SPEED, YAW_RATE = 0.15, 0.3  # m/s, rad/s: a circle of 0.5 m radius
 DRIVE_PERIOD, DRIVE_STEPS = 1 / 30, 33  # s and steps between updates of the waffle's drive
 MOST_CLIENTS = 64
@@ -31,7 +32,8 @@ LEAST_RATIO = 0.8  # of a step that holds a bare one; below that it cannot have
 
 def measure(settings: Settings) -> list[Figure]:
     """Microseconds a step of either kind, and how many times the bare one ours takes."""
-    course, waffle, bare = _open()
+    course, bare = open_course()
+    waffle = course.spawn_waffle()
     found = _compare("standing", course, waffle, bare, settings)
     _drive_a_circle(course, waffle)
     found += _compare("driving", course, waffle, bare, settings)
@@ -41,8 +43,8 @@ def measure(settings: Settings) -> list[Figure]:
 
 def bare_step_time() -> float:
     """Seconds of one bare step with the waffle driving, for parts that compare with it."""
-    course, waffle, bare = _open()
-    _drive_a_circle(course, waffle)
+    course, bare = open_course()
+    _drive_a_circle(course, course.spawn_waffle())
     seconds = _timed(bare, BLOCK * BLOCKS)
     course.close()
     return seconds
@@ -57,12 +59,12 @@ def check_same_work(state: str, median: float) -> None:
         )
 
 
-def _open() -> tuple[CourseWorld, Model, Callable[[], None]]:
-    """The course, its waffle, and the bare step of the same client."""
+def open_course() -> tuple[CourseWorld, Callable[[], None]]:
+    """The course, and the bare step of the same client."""
     before = _clients()
     course = CourseWorld()
     (client,) = _clients() - before
-    return course, course.spawn_waffle(), partial(pybullet.stepSimulation, physicsClientId=client)
+    return course, partial(pybullet.stepSimulation, physicsClientId=client)
 
 
 def _drive_a_circle(course: CourseWorld, waffle: Model) -> None:
