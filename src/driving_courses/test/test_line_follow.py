@@ -1,6 +1,7 @@
 """LineFollow-v0: what is seen, what counts, when it ends, and that a seed repeats it to the bit."""
 
 import dataclasses
+import os
 import subprocess
 import sys
 
@@ -12,6 +13,8 @@ from driving_courses.randomisation import TRIALS
 from gymnasium.utils.env_checker import check_env
 
 import driving_courses  # noqa: F401  (names the environments)
+from bullet_sim.rendering.renderer import open_renderer
+from driving_courses import simulation
 
 LINE = "driving_courses/LineFollow-v0"
 SPEED, GAIN = 0.15, 1.2  # m/s; rad/s for a line at the picture's edge
@@ -117,6 +120,22 @@ def test_vectors_of_processes_see_what_one_process_sees():
         for theirs, own in zip(seen, mine, strict=True):
             np.testing.assert_array_equal(theirs[number], own)
     env.close()
+
+
+@pytest.mark.parametrize("size, own, wanted", [
+    ((84, 84), None, "0"), ((84, 84), "2", "2"), ((640, 480), None, None)])
+def test_small_pictures_are_drawn_without_threads_unless_somebody_says_how_many(
+        monkeypatch, size, own, wanted):
+    seen = []
+    monkeypatch.setattr(simulation, "open_renderer",
+                        lambda: seen.append(os.environ.get("LP_NUM_THREADS")) or open_renderer())
+    monkeypatch.delenv("LP_NUM_THREADS", raising=False)
+    if own:
+        monkeypatch.setenv("LP_NUM_THREADS", own)
+    env = make(size=size)
+    env.reset(seed=0)
+    env.close()
+    assert seen == [wanted] and os.environ.get("LP_NUM_THREADS") == own
 
 
 def test_a_process_that_draws_nothing_may_be_forked_and_another_says_what_to_do():

@@ -27,6 +27,8 @@ from driving_courses.randomisation import Episode
 from driving_courses.resources import package_folder, resources
 from evaluation.lap import Sample
 
+_THREADS = "LP_NUM_THREADS"  # of Mesa's llvmpipe, which reads it while it is opened
+_SMALL = 320 * 240  # px of a picture that is drawn sooner than threads are woken for it
 _drawing: set[int] = set()  # processes that have opened a renderer; a forked one has its parent's
 
 
@@ -55,7 +57,7 @@ class Simulation:
         """The robot stands at `start` (x, y in m, yaw in rad); go on to the first picture."""
         self._end()
         if self._renderer is None:
-            self._renderer = _open_renderer()
+            self._renderer = _open_renderer(math.prod(self._size))
         said = episode.start
         self._gain = max(1.0, said.light)
         world = _disturbed(world, said.light, episode.friction)
@@ -116,13 +118,23 @@ class Simulation:
         return Camera(self._world, link, replace(sensor, cameras=(camera,)), self._renderer)
 
 
-def _open_renderer() -> Renderer:
-    """CourseError in a process that was forked from one that draws: OpenGL would wait for ever."""
+def _open_renderer(pixels: int) -> Renderer:
+    """For pictures of so many pixels.
+
+    CourseError in a process that was forked from one that draws: OpenGL would wait for ever.
+    """
     if _drawing - {os.getpid()}:
         raise CourseError("this process was forked from one that has drawn pictures; start it "
                           "otherwise: vector_kwargs={'context': 'spawn'}")
     _drawing.add(os.getpid())
-    return open_renderer()
+    own_choice = _THREADS in os.environ or pixels > _SMALL
+    if not own_choice:
+        os.environ[_THREADS] = "0"
+    try:
+        return open_renderer()
+    finally:
+        if not own_choice:
+            del os.environ[_THREADS]
 
 
 def _disturbed(world: WorldDescription, light: float, friction: float) -> WorldDescription:

@@ -125,7 +125,8 @@ class Outlines:
         self._corners = np.array(boxes).reshape(-1, 4, 8)
         counts = [len(shape.parts) for shape in shapes]
         self._owner = np.repeat(np.arange(len(shapes)), counts)
-        self._ends = np.cumsum(counts)[:-1]
+        ends = itertools.accumulate(counts)
+        self._spans = [slice(end - count, end) for end, count in zip(ends, counts, strict=True)]
         self._centres = np.array([[*shape.centre, 1.0] for shape in shapes]).reshape(-1, 4, 1)
         self._radii = np.array([shape.radius for shape in shapes])
 
@@ -152,4 +153,4 @@ class Outlines:
 
     def by_node(self, of_parts: np.ndarray) -> list[np.ndarray]:
         """Splits a value per part into an array for each node."""
-        return np.split(of_parts, self._ends)
+        return [of_parts[span] for span in self._spans]
