@@ -28,7 +28,7 @@ from sim_bench.settings import Settings, say
 
 TRIANGLES = (30_000, 100_000, 300_000, 1_000_000)
 RUNS, WINDOW, SETTLING = 3, 6.0, 3.0  # s, wall
-DRAWING = ("draw", "read back", "convert")
+DRAWING = ("submit", "draw", "read back", "convert")
 FRAME = re.compile(r"camera \S+ \(\d+x\d+\): ([\d.]+) ms a frame")  # as the simulator logs it
 
 WORLDS: dict[str, Callable[[Path], MadeWorld]] = {
