@@ -557,7 +557,7 @@ def test_yaml_of_a_package(package, capsys):
     package(arm__yaml="arm:\n  grip: {type: effort_controllers/JointPositionContrller}\n")
     assert main([folder]) == 1
     said = capsys.readouterr().out
-    assert "bad.yaml\n  PROBLEM       YAML: while scanning" in said and "line 2, column 1" in said
+    assert "bad.yaml\n  PROBLEM       YAML: line 2, column 1: found character" in said
     assert "controller /arm/grip (effort_controllers/JointPositionContrller): there is no" in said
 
 
