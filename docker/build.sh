@@ -4,5 +4,5 @@ set -euo pipefail
 scripts/setup.sh "$@"
 rm -rf "$HOME/.cache" "$HOME/.ros"
 mkdir -p out
-chmod -R a+rwX .setup build devel out src/sim/bullet_sim/src/bullet_sim/data/models src/compat/turtlebot3_gazebo/{models,worlds} src/*/names
+chmod -R a+rwX .setup build devel out src/sim/bullet_sim/src/bullet_sim/data/models src/compat/turtlebot3_gazebo/{models,worlds} src/{compat,navigation}/names
 docker/lists.sh . >/usr/local/share/workspace-lists

@@ -3,7 +3,7 @@
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$root"
 rm -rf .venv .setup build devel install out/test .pytest_cache .ruff_cache .catkin_workspace __pycache__
-rm -rf src/sim/bullet_sim/src/bullet_sim/data/models src/compat/turtlebot3_gazebo/worlds src/*/names
+rm -rf src/sim/bullet_sim/src/bullet_sim/data/models src/compat/turtlebot3_gazebo/worlds src/{compat,navigation}/names
 for model in src/compat/turtlebot3_gazebo/models/*; do [ "${model##*/}" = turtlebot3_world ] || rm -rf "$model"; done
 [ ! -L src/CMakeLists.txt ] || rm -f src/CMakeLists.txt
 find src test scripts tools -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -78,7 +78,7 @@ def arrange(src: Path) -> tuple[list[str], list[str]]:
     told = []
     if after:
         told.append("Built in place of ours: " + ", ".join(after.values()))
-    if gone := before - after.keys():
+    if gone := {path for path in before - after.keys() if (src / path / "package.xml").is_file()}:
         told.append("Ours again: " + ", ".join(sorted(Path(path).name for path in gone)))
     return told, wrong
 

@@ -93,6 +93,14 @@ def test_a_folder_whose_name_is_gone_is_stale(names, tmp_path):
     assert maker.stale() == [tmp_path / "src/compat/names/old"]
 
 
+def test_a_learners_own_table_is_left_alone(names, tmp_path):
+    own = tmp_path / "src/my_detector"
+    (own / "names/person").mkdir(parents=True)
+    (own / "names.yaml").write_text("person: 1")
+    maker = names("[{description: a, names: {n: 1.2.3}}]")
+    assert len(maker.files()) == 2 and maker.stale() == []
+
+
 @pytest.mark.parametrize(("text", "said"), [
     ("[{description: a, nmes: {n: 1.2.3}}]", "unknown key 'nmes'"),
     ("[{description: a, names: {n: 1.2}}]", "names: must be upstream's version by package"),

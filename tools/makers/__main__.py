@@ -40,12 +40,13 @@ def main() -> int:
             continue
         try:
             for path, data in maker.files().items():
-                if replace_file(options.out / path, data):
-                    print(f"{options.out / path}: {len(data)} bytes")
-            for folder in getattr(maker, "stale", list)() if options.out == ROOT else ():
-                shutil.rmtree(folder)
+                target = options.out / path
+                if replace_file(target, data):
+                    print(f"{target}: {len(data)} bytes")
+            for target in getattr(maker, "stale", list)() if options.out == ROOT else ():
+                shutil.rmtree(target)
         except OSError as error:
-            print(f"makers: {error.filename}: {error.strerror}", file=sys.stderr)
+            print(f"makers: {target}: {error.strerror}", file=sys.stderr)
             return 1
         except RunError as error:
             print(f"makers: {error}", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""Packages that are only a name, from the tables src/*/names.yaml.
+"""Packages that are only a name, from the tables src/{compat,navigation}/names.yaml.
 
 Each build makes them, in names/ beside their table, before catkin looks for packages.
 """
@@ -14,7 +14,7 @@ from run_session.failure import RunError
 from run_session.records import Must, read_yaml, to_record
 
 ROOT = Path(__file__).resolve().parents[2]
-TABLES = "src/*/names.yaml"
+FOLDERS = ("src/compat", "src/navigation")  # of tables; a learner's package may have a names.yaml
 
 PACKAGE = """<?xml version="1.0"?>
 <package format="2">
@@ -55,7 +55,7 @@ class Names:
 def files() -> dict[str, bytes]:
     """The files' bytes by path in the repository; RunError names table and key."""
     made: dict[str, bytes] = {}
-    for table in sorted(ROOT.glob(TABLES)):
+    for table in tables():
         groups = read_yaml(table)
         if not isinstance(groups, list) or not all(isinstance(each, dict) for each in groups):
             raise RunError(f"{table}: must be a list of groups of names")
@@ -73,8 +73,13 @@ def files() -> dict[str, bytes]:
 def stale() -> list[Path]:
     """Folders of names that no table has any more."""
     known = {ROOT / path for path in files()}
-    return [folder for table in ROOT.glob(TABLES) for folder in table.parent.glob("names/*")
+    return [folder for table in tables() for folder in table.parent.glob("names/*")
             if folder / "package.xml" not in known]
+
+
+def tables() -> list[Path]:
+    """Those that are there: a learner may have removed a folder of ours."""
+    return [table for folder in FOLDERS if (table := ROOT / folder / "names.yaml").is_file()]
 
 
 def manifest(group: Names, name: str, version: str) -> str:

@@ -91,7 +91,8 @@ def test_without_a_name_it_lists_all(capsys):
 
 
 @pytest.mark.parametrize(("language", "said"), [
-    ("en", "A controller for each hinge  ("), ("zh_CN", "steering       每个转向铰链一个控制器  (")])
+    ("en", "A controller for each hinge  ("),
+    ("zh_CN", "steering       每个转向铰链一个控制器  (")])
 def test_titles_are_in_the_terminals_language(capsys, monkeypatch, language, said):
     monkeypatch.setenv("LC_ALL", "C.UTF-8")
     monkeypatch.setenv("LANGUAGE", language)

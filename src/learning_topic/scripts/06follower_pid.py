@@ -104,7 +104,8 @@ def main():
         rospy.wait_for_message("camera/rgb/image_raw", Image, timeout=5)
     except rospy.ROSException:
         if not rospy.is_shutdown():
-            rospy.logwarn("no images on camera/rgb/image_raw yet: no course?  还没有收到图像")
+            rospy.logwarn("no images on camera/rgb/image_raw yet: no course, or a burger?  "
+                          "还没有收到图像：赛道启动了吗？burger 没有相机")
     rospy.spin()
 
 

@@ -56,6 +56,11 @@ def test_a_python_file_without_a_first_line(node):
                    "#!/usr/bin/env python3 there")
 
 
+def test_a_module_needs_no_first_line(node):
+    (node.path.parent / "__init__.py").touch()
+    assert node(b"import os\n") == []
+
+
 def test_what_catkin_starts_itself_needs_no_first_line(node):
     (node.path.parents[1] / "CMakeLists.txt").write_text(
         "catkin_install_python(PROGRAMS scripts/talker.py DESTINATION x)")

@@ -89,6 +89,8 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
      "hector_mapping 不需要里程计（package.xml 需要它）"),
     ("mark: a.yaml: missing key 'b'; there are: course, program, points, limits",
      "mark: a.yaml：没有键 'b'；可用的有：course, program, points, limits"),
+    ("check_exercise: no exercise 'white_lane' (did you mean white_line?); there are: a, b",
+     "check_exercise: 没有练习 'white_lane'（是不是 white_line？）；有：a, b"),
     ("navigate: --map a.yaml: no such file; it is a map's NAME.yaml",
      "navigate: --map a.yaml：没有这个文件；应该是地图的 名字.yaml"),
     ("a.world, line 1: write &amp; for &; line 2: write b=\"...\" with quotes; taken all the same, "
@@ -97,7 +99,7 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
     ("model 'm' <pose>: '1 2 x' is not 6 numbers; 0 0 0 0 0 0 is used instead",
      "model 'm' <pose>：'1 2 x' 不是 6 个数；改用 0 0 0 0 0 0"),
     ("no joint of model m named 'j'; there are: none", "没有名为 'j' 的模型 m 的关节；有：无"),
-    ("model m (1 links, 0 joints)", "模型 m（1 个连杆，0 个关节）"),
+    ("model m (1 links, 0 joints)", "模型 m（1 个 link，0 个关节）"),
     ("target a: left out: a.cpp includes <gazebo/gazebo.hh>, and the C++ API of Gazebo is not here",
      "target a: 略去：a.cpp 包含 <gazebo/gazebo.hh>，而这里没有 Gazebo 的 C++ API"),
     ("3 packages: to be installed: a b", "3 个包：需要安装：a b"),
@@ -117,6 +119,11 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
      "check: x: 没有这个文件或包（是不是 y？）；试试 `rospack list`，或给出路径")])
 def test_the_shipped_catalogue_has(english, chinese):
     assert read_catalogue("zh_CN").translate(english) == chinese
+
+
+def test_what_is_too_deep_stays():
+    said = "mark: missing key 'b'; there are: c d"
+    assert read_catalogue("zh_CN")._message(said, 0) is None
 
 
 def test_a_heading_is_translated_as_one_alone(monkeypatch):

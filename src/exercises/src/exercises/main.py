@@ -69,8 +69,8 @@ def list_all(known: dict[str, Exercise]) -> int:
 def chosen(known: dict[str, Exercise], name: str) -> Exercise:
     """The exercise of that name; if there is none, CannotCheck lists all."""
     if name not in known:
-        raise CannotCheck(f"no exercise {name!r}{did_you_mean(name, known, 0.75)}; there are: "
-                          f"{', '.join(known)}")
+        given = repr(name) + did_you_mean(name, known, 0.75)
+        raise CannotCheck(f"no exercise {given}; there are: {', '.join(known)}")
     return known[name]
 
 

@@ -17,8 +17,8 @@ def main():
     spawn = rospy.ServiceProxy("/spawn", Spawn)
     try:
         response = spawn(X, Y, THETA, NAME)
-    except rospy.ServiceException:  # turtlesim says why  原因见 turtlesim 的终端
-        sys.exit(f"no turtle: is there a {NAME} already?  是否已有同名海龟？")
+    except rospy.ServiceException as error:
+        sys.exit(f"no turtle: {error}: is there a {NAME} already?  是否已有同名海龟？")
     rospy.loginfo("spawned: %s", response.name)
 
 

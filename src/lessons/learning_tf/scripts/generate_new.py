@@ -16,8 +16,8 @@ def main():
     try:
         response = rospy.ServiceProxy("/spawn", Spawn)(X, Y, THETA, NAME)
         rospy.loginfo("spawned: %s", response.name)
-    except rospy.ServiceException:  # turtlesim says why  原因见 turtlesim 的终端
-        sys.exit(f"no turtle: is there a {NAME} already?  是否已有同名海龟？")
+    except rospy.ServiceException as error:
+        sys.exit(f"no turtle: {error}: is there a {NAME} already?  是否已有同名海龟？")
 
 
 if __name__ == "__main__":

@@ -46,7 +46,7 @@ START, GOAL = np.array([1.0, 1.0, 0.0]), np.array([3.0, 3.0, 0.0])
     (np.array([-1.0, 1.0, 0.0]), GOAL, [START_OFF])])
 def test_a_start_or_goal_off_the_costmap_is_said(monkeypatch, start, goal, said):
     told = []
-    monkeypatch.setattr(rospy, "logwarn_throttle_identical", lambda _period, why: told.append(why))
+    monkeypatch.setattr(rospy, "logwarn_throttle", lambda _period, why: told.append(why))
     planner = Navfn(None)
     path = planner.plan(COSTMAP, None, start, goal, "map")
     assert (path is None) is bool(said) and told == said

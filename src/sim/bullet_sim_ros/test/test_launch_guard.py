@@ -1,11 +1,12 @@
 """Which roslaunch commands are refused while a simulator runs."""
 
 import socket
+from types import SimpleNamespace
 
 import pytest
 from workspace_needs.check.parameter_commands import output_of
 
-from bullet_sim_ros import launch_guard, only_simulator
+from bullet_sim_ros import already_running, launch_guard, only_simulator
 
 ROSLAUNCH = ["/usr/bin/python3", "/usr/bin/roslaunch"]
 WORLD = '<include file="$(find gazebo_ros)/launch/empty_world.launch"/>'
@@ -21,7 +22,7 @@ def refusing(monkeypatch):
         return ("%s runs", name) if name == "/gazebo" else ()
 
     monkeypatch.setattr(only_simulator, "refusal", refusal)
-    monkeypatch.setattr(launch_guard, "publishes", lambda _uri, topic: topic == "/clock")
+    monkeypatch.setattr(launch_guard, "may_simulate", lambda _uri: True)
     with socket.create_server(("127.0.0.1", 0)) as listening:
         uri = f"http://127.0.0.1:{listening.getsockname()[1]}"
         monkeypatch.setenv("ROS_MASTER_URI", uri)
@@ -81,11 +82,21 @@ def test_a_port_of_its_own_counts(refusing, monkeypatch, words):
 @pytest.mark.parametrize("online, clock", [(False, True), (True, False)])
 def test_without_a_simulator_at_the_master_no_file_is_read(refusing, monkeypatch, online, clock):
     monkeypatch.setattr(launch_guard, "is_online", lambda _uri: online)
-    monkeypatch.setattr(launch_guard, "publishes", lambda _uri, _topic: clock)
+    monkeypatch.setattr(launch_guard, "may_simulate", lambda _uri: clock)
     monkeypatch.setattr(launch_guard, "simulators_of", lambda *_: pytest.fail("read"))
     for words in ([], ["-p", "11399"]):
         command = [*ROSLAUNCH, *words, "gazebo_ros", "empty_world.launch"]
         assert launch_guard.refusal_of(command) == ""
+
+
+@pytest.mark.parametrize(("publishers", "expected"), [
+    ([], False), ([["/rosout", ["/follower"]], ["/scan", ["/gazebo_scan"]]], False),
+    ([["/clock", ["/player"]]], True), ([["/rosout", ["/two/gazebo"]]], True)])
+def test_a_simulator_is_noticed_by_its_clock_or_before_by_its_name(
+        monkeypatch, publishers, expected):
+    master = SimpleNamespace(getSystemState=lambda _caller: (1, "", (publishers, [], [])))
+    monkeypatch.setattr(already_running.xmlrpc.client, "ServerProxy", lambda *_: master)
+    assert already_running.may_simulate("http://localhost:11311") is expected
 
 
 def test_the_value_is_printed_without_a_newline(monkeypatch, capfd):

@@ -1,14 +1,16 @@
 """Who gets in: token, Host and Origin, and what a page without control may do."""
 
 import asyncio
+import errno
 
 import aiohttp
 import pytest
+from aiohttp import web
 from sim_viewer import options as node_options
 from sim_viewer import registry
 from sim_viewer.options import Options
 from sim_viewer.registry import Node
-from sim_viewer.server import Server, further_urls, page_url
+from sim_viewer.server import NoPort, Server, further_urls, page_url
 from yarl import URL
 
 PATHS = ("/", "/main.js", "/ws")
@@ -171,3 +173,19 @@ def test_without_a_master_every_question_says_so(visit):
                 answer = await ask(link, op, **args)
                 assert "the ROS master does not answer" in answer["error"], op
     visit(story, control=True)
+
+
+def test_a_port_of_roots_is_named(monkeypatch):
+    async def refused(_site):
+        raise PermissionError(errno.EACCES, "Permission denied")
+
+    async def start():
+        server = Server(Node(Options(port=80), asyncio.get_running_loop()), {})
+        try:
+            return await server.start()
+        finally:
+            await server.close()
+
+    monkeypatch.setattr(web.TCPSite, "start", refused)
+    with pytest.raises(NoPort, match="port 80 is root's; give one from 1024 with port:="):
+        asyncio.run(start())

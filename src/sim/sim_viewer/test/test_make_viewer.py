@@ -184,6 +184,14 @@ def master_chosen(**given: str) -> tuple[list[str], str]:
     return last.split(","), "\n".join(said)
 
 
+@pytest.mark.parametrize("port", ["0", "abc", "65536", "8080x"])
+def test_a_port_that_is_none_is_told_of_before_the_course_starts(port):
+    done = subprocess.run([ROOT / "scripts/viewer.sh", f"port:={port}"], text=True,
+                          capture_output=True, timeout=LIMIT, check=False)
+    assert done.returncode == 2
+    assert done.stderr == f"viewer: port is {port}; give one from 1 to 65535, such as PORT=8080\n"
+
+
 def test_a_named_master_is_kept(somebody_elses_master):
     there = f"http://{socket.gethostname()}:11399"  # asks nobody outside this machine
     assert master_chosen(ROS_MASTER_URI=there) == ([there, "", ""], "")  # reached by its own name

@@ -12,6 +12,7 @@ from __future__ import annotations
 import itertools
 import os
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 from typing import NoReturn
@@ -101,6 +102,9 @@ def left_out(tool: str, args: list[str], source: Path) -> list[str]:
     """
     if {"-h", "--help"} & set(args) or not source.is_dir():
         return []
+    if (source / "compat/names.yaml").is_file():  # this repository, perhaps after a `git pull`
+        subprocess.run([sys.executable, "-B", source.parent / "tools/makers", "name_packages"],
+                       stdout=subprocess.DEVNULL, check=False)
     try:
         verdicts = judge(source, words=args, now=True)
         for verdict in verdicts:

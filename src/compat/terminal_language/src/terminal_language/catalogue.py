@@ -109,8 +109,9 @@ class Catalogue:
         name, _, rest = text.partition(": ")
         if name.isidentifier() and rest in self._exact:  # a program before its text
             return f"{self._exact.get(name, name)}: {self._exact[rest]}"
-        if name.isidentifier() and 0 < self._weight(rest) >= self._weight(text):
-            return f"{self._exact.get(name, name)}: {self._clause(rest, depth)}"
+        if (name.isidentifier() and 0 < self._weight(rest) >= self._weight(text)
+                and (told := self._clause(rest, depth)) is not None):
+            return f"{self._exact.get(name, name)}: {told}"
         found = self._clause(text, depth)
         parts = JOINTS.split(text)
         if found is not None or len(parts) == 1:
@@ -142,8 +143,11 @@ class Catalogue:
         found = self._sentence(text, depth)
         if found is None and (ending := IN_BRACKETS.fullmatch(text)):
             head, why = self._sentence(ending[1], depth), self._exact.get(ending[2][2:-1])
+            meant = self._sentence(ending[2].strip(), depth - 1)
             if head is not None:
                 found = head + (self._around(ending[2], depth - 1) or ending[2])
+            elif meant is not None:
+                found = ending[1] + meant
             elif why is not None and not JOINTS.search(ending[1]):  # a name and why
                 found = f"{ending[1]}（{why}）"
         return found

@@ -59,9 +59,10 @@ class GlobalPlanner(Plugin, ABC):
              goal: np.ndarray, frame: str) -> np.ndarray | None:
         """Path (N, 3) in the costmap's `frame`, or None; publishes it (None as an empty path)."""
         path = self._plan(costmap, footprint, start, goal)
-        for pose, why in ((start, START_OFF), (goal, GOAL_OFF)) if path is None else ():
-            if not costmap.contains(costmap.cells_of(pose[:2])):
-                rospy.logwarn_throttle_identical(PERIOD, why)
+        if path is None and not costmap.contains(costmap.cells_of(start[:2])):
+            rospy.logwarn_throttle(PERIOD, START_OFF)
+        if path is None and not costmap.contains(costmap.cells_of(goal[:2])):
+            rospy.logwarn_throttle(PERIOD, GOAL_OFF)
         with self._publishing:
             if self._topic is not None and self._topic.get_num_connections():
                 self._topic.publish(path_message(np.zeros((0, 3)) if path is None else path, frame,

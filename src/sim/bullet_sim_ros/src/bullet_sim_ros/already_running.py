@@ -21,6 +21,8 @@ from xml.parsers.expat import ExpatError
 
 from rosgraph.names import get_ros_namespace, load_mappings, ns_join, resolve_name
 
+from bullet_sim_ros.names import CLOCK
+
 ANSWER_TIME = 2.0  # s, wall, for a connection and for an answer
 TURN_TIME = 15.0  # s, wall; a registration takes 0.1 s
 LOOK_PERIOD = 0.02  # s, wall
@@ -51,15 +53,17 @@ def is_online(master_uri: str) -> bool:
     return True
 
 
-def publishes(master_uri: str, topic: str) -> bool:
-    """Whether a node is registered there as the topic's publisher; False without a master."""
+def may_simulate(master_uri: str) -> bool:
+    """Whether /clock has a publisher there, or a node's name is a simulator's, which it has before
+    it publishes; False without a master."""
     master = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport(ANSWER_TIME))
     try:
         _, _, (publishers, _, _) = master.getSystemState("/roslaunch")
     except (OSError, http.client.HTTPException, xmlrpc.client.Error, ExpatError, TypeError,
             ValueError):
         return False
-    return any(name == topic for name, _ in publishers)
+    return any(name == CLOCK or any(node.endswith("/gazebo") for node in nodes)
+               for name, nodes in publishers)
 
 
 def sign_of_life(master_uri: str, name: str) -> Sign:

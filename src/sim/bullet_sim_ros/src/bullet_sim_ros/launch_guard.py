@@ -12,8 +12,7 @@ import re
 import sys
 from pathlib import Path
 
-from bullet_sim_ros import names
-from bullet_sim_ros.already_running import is_online, publishes
+from bullet_sim_ros.already_running import is_online, may_simulate
 
 _OWN_PORT = re.compile(r"(?:^| )(?:-p|--port)[ =]?(\d+)")  # of roslaunch's master
 SERVERS = ("gzserver", "gazebo", "debug", "perf")  # of gazebo_ros
@@ -41,7 +40,7 @@ def refusal_of(command: list[str]) -> str:
         return ""
     own_port = _OWN_PORT.search(" ".join(words))
     uri = f"http://localhost:{own_port[1]}" if own_port else os.environ.get("ROS_MASTER_URI", "")
-    if not (is_online(uri) and publishes(uri, names.CLOCK)):  # as each simulator does
+    if not (is_online(uri) and may_simulate(uri)):
         return ""
     # Only now, as these take half a second to load.
     import roslaunch

@@ -80,6 +80,12 @@ def script_finding(path: Path) -> Iterator[Finding]:
         yield problem(str(path), "line 1", why)
 
 
+def _is_script(path: Path) -> bool:
+    """Whether it is no module: where all files are executable, as on Windows' disks, both are."""
+    return (path.suffix == ".py" and path.name != "setup.py"
+            and not (path.parent / "__init__.py").exists())
+
+
 def _fault(line: bytes, path: Path) -> str:
     if line.startswith(BYTE_ORDER_MARK + b"#!"):
         command = rf"sed -i '1s/^\xEF\xBB\xBF//' {shlex.quote(str(path))}"
@@ -87,7 +93,7 @@ def _fault(line: bytes, path: Path) -> str:
                 f"{command}")
     if not line.startswith(b"#!"):
         return (f"it has no #!, so that rosrun starts it as a shell script; {PYTHON}"
-                if path.suffix == ".py" and not line.startswith(b"\x7fELF") else "")
+                if _is_script(path) and not line.startswith(b"\x7fELF") else "")
     if line.endswith(b"\r"):
         command = rf"sed -i 's/\r$//' {shlex.quote(str(path))}"
         return f"it ends as lines do on Windows, so that no interpreter is found; type: {command}"

@@ -240,4 +240,4 @@ def _processor() -> str:
     """The processor's name, and the instruction set that torch uses."""
     told = re.findall(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))
     used = re.findall(r"CPU capability usage: (\S+)", torch.__config__.show())
-    return ", ".join([*told[:1], *used]) or platform.machine()
+    return ", ".join([*(told[:1] or [platform.machine()]), *used])
