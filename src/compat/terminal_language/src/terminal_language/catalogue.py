@@ -142,14 +142,12 @@ class Catalogue:
         """The translation of a text, or of what stands before its brackets, and of those."""
         found = self._sentence(text, depth)
         if found is None and (ending := IN_BRACKETS.fullmatch(text)):
-            head, why = self._sentence(ending[1], depth), self._exact.get(ending[2][2:-1])
-            meant = self._sentence(ending[2].strip(), depth - 1)
+            head, inside = self._sentence(ending[1], depth), ending[2].strip()
             if head is not None:
                 found = head + (self._around(ending[2], depth - 1) or ending[2])
-            elif meant is not None:
-                found = ending[1] + meant
-            elif why is not None and not JOINTS.search(ending[1]):  # a name and why
-                found = f"{ending[1]}（{why}）"
+            elif not JOINTS.search(ending[1]):  # a name, and why or what is meant
+                why, meant = self._exact.get(inside[1:-1]), self._sentence(inside, depth - 1)
+                found = f"{ending[1]}（{why}）" if why else meant and ending[1] + meant
         return found
 
     def _weight(self, text: str) -> int:
