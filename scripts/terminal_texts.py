@@ -81,7 +81,8 @@ OF_LISTS = ("one of {0}", "line {0}", "line {0}: {1}", "line {0}, column {1}", "
             "line {0}, column {1} (file {2})", "line {0}, column {1}: {2}",
             "write &amp; for &", "write &gt; for >",
             "it must be a whole number of pixels, 1 or more", "link of model {0}",
-            "joint of model {0}", "map on {0}", "laser scans on {0}")
+            "joint of model {0}", "{0} when evaluating expression {1}", "map on {0}",
+            "laser scans on {0}", "there are: {0}")
 # Of missing_headers.cmake.
 OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its place: {3}",
             "{0}: <{1}> is included, but CMakeLists.txt does not name {2} in find_package(catkin "
@@ -91,6 +92,7 @@ OF_VALUES = ("none", "unknown", "a number", "this user", "parent link", "child l
              "joint", "model", "sensor")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
             "world {0} ({1} models)", "model {0} ({1} links, {2} joints)", "the text",
+            "{0}. Arg xml is {1}",  # roslaunch's
             "{0} includes <{1}>, and the C++ API of Gazebo is not here",
             "{0} packages: all that Debian has for them is installed",  # of deps
             "{0} packages: to be installed: {1}", "{0} packages: installing {1}")

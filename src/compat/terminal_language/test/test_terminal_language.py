@@ -91,6 +91,13 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
      "mark: a.yaml：没有键 'b'；可用的有：course, program, points, limits"),
     ("check_exercise: no exercise 'white_lane' (did you mean white_line?); there are: a, b",
      "check_exercise: 没有练习 'white_lane'（是不是 white_line？）；有：a, b"),
+    ("Invalid XML: not well-formed (invalid token): line 1, column 27 (file len.urdf)",
+     "Invalid XML: 格式不正确（无效符号）: 第 1 行第 27 列（文件 len.urdf）"),
+    ("/a/movng.world not found (searched: /a) (did you mean moving.world?); there are: /a/moving",
+     "找不到 /a/movng.world（找过：/a）（是不是 moving.world？）; 有：/a/moving"),
+    ("input is no model. (the text is not well-formed XML: not well-formed (invalid token) at "
+     "line 1, column 2)", "input is no model. (the text is not well-formed XML: not well-formed "
+     "(invalid token) at line 1, column 2)"),
     ("navigate: --map a.yaml: no such file; it is a map's NAME.yaml",
      "navigate: --map a.yaml：没有这个文件；应该是地图的 名字.yaml"),
     ("a.world, line 1: write &amp; for &; line 2: write b=\"...\" with quotes; taken all the same, "

@@ -15,7 +15,8 @@ PLACE = re.compile(r"\{(\d+)\}")
 AROUND = re.compile(r"((?:\s|\x1b\[[\d;]*[A-Za-z])*(?:\[\w+\] (?:\[[\d., ]+\]: )?)?)(.*?)"
                     r"((?:\s|\x1b\[[\d;]*[A-Za-z])*)", re.DOTALL)
 JOINTS = re.compile(r"(: |; )")
-IN_BRACKETS = re.compile(r"(.+)( \([^()]*\))", re.DOTALL)  # such as argparse's default
+# Such as argparse's default.
+IN_BRACKETS = re.compile(r"(.+)( \((?:[^()]|\([^()]*\))*\))", re.DOTALL)
 MOST_PARTS = 8  # of a text between colons and semicolons; more are a list, an item at a time
 WORD = re.compile(r"[A-Za-z]{2,}")
 # Where a value begins or ends: no space between Chinese characters, one between a Chinese
@@ -44,9 +45,9 @@ class Sentence:
     def values(self, text: str) -> dict[int, str] | None:
         """The values by number that make this sentence the text, or None; each the shortest.
 
-        A sentence that begins with words and has no semicolon ends before one; a value that it
-        begins with has no joint, or stays in front. Takes linear time, which a regular expression
-        of many places does not.
+        No value has half of a pair of brackets. A sentence that begins with words and has no
+        semicolon ends before one; a value that it begins with has no joint, or stays in front.
+        Takes linear time, which a regular expression of many places does not.
         """
         first, *further, last = self._parts[::2]
         at, end = len(first), len(text) - len(last)
@@ -62,6 +63,8 @@ class Sentence:
             values.append(text[at:found])
             at = found + len(part)
         values.append(text[at:end])
+        if any(value.count("(") != value.count(")") for value in values):
+            return None
         if not first and not self._leads and JOINTS.search(values[0]):
             return None
         ends = values if last else values[:-1]

@@ -42,6 +42,7 @@ REPEATED = 20  # a file that is this often in the stack of includes includes its
 NOT_UTF8 = re.compile(r"'utf-8' codec can't decode .*?: "
                       "(?:invalid (?:start|continuation) byte|unexpected end of data)")
 TOO_DEEP = re.compile(r"maximum recursion depth exceeded(?: (?:while|in) [a-z ]*Python object)?")
+OF_A_TEXT = re.compile(r' in "<unicode string>",')  # PyYAML's name of what roslaunch has read
 ON_THE_WAY = re.compile(r"^(while processing \S+: )+(?=while processing )")
 
 
@@ -153,7 +154,7 @@ def _error_line(error: Exception) -> str:
         return (f"no package {error.args[0]} is found: source the devel/setup.bash of its "
                 "workspace first")
     text = " ".join(str(error).split()) or type(error).__name__
-    text = ON_THE_WAY.sub("", text)
+    text = OF_A_TEXT.sub(" at", ON_THE_WAY.sub("", text))
     text = NOT_UTF8.sub("it is not UTF-8; save it as UTF-8", text)
     text = TOO_DEEP.sub("elements are nested too deep", text)
     return text if len(text) <= LONGEST_LINE else f"{text[:LONGEST_LINE]} …"
