@@ -82,7 +82,8 @@ OF_LISTS = ("one of {0}", "line {0}", "line {0}: {1}", "line {0}, column {1}", "
             "write &amp; for &", "write &gt; for >",
             "it must be a whole number of pixels, 1 or more", "link of model {0}",
             "joint of model {0}", "{0} when evaluating expression {1}", "map on {0}",
-            "laser scans on {0}", "there are: {0}")
+            "laser scans on {0}", "there are: {0}",
+            'not yet: "{0}" passed to lookupTransform argument {1} does not exist.')
 # Of missing_headers.cmake.
 OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its place: {3}",
             "{0}: <{1}> is included, but CMakeLists.txt does not name {2} in find_package(catkin "

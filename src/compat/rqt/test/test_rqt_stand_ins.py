@@ -12,9 +12,13 @@ from rqt_pages.stand_in import COMMANDS, TABS, line_for
 
 pytestmark = pytest.mark.processes
 
-ROOM = Path(__file__).resolve().parents[2]
-TOOLS = sorted(path.parent.name for path in ROOM.glob("rqt_*/package.xml"))
-VIEWER = ROOM.parents[1] / "sim" / "sim_viewer" / "README.md"
+SRC = Path(__file__).resolve().parents[3]
+TOOLS = sorted(path.parent.name for path in SRC.glob("compat/names/rqt_*/package.xml"))
+VIEWER = SRC / "sim/sim_viewer/README.md"
+
+
+def test_there_are_fourteen():
+    assert len(TOOLS) == 14
 
 
 @pytest.mark.parametrize("tool", TOOLS)

@@ -23,7 +23,7 @@ def main():
             point = buffer.transform(ahead, "world").point
             rospy.loginfo("in world: %.2f, %.2f", point.x, point.y)
         except tf2_ros.TransformException as error:
-            rospy.logwarn("no transform to it yet: %s", error)
+            rospy.logwarn("not yet: %s", error)
         rate.sleep()
 
 

@@ -42,7 +42,7 @@ REPEATED = 20  # a file that is this often in the stack of includes includes its
 NOT_UTF8 = re.compile(r"'utf-8' codec can't decode .*?: "
                       "(?:invalid (?:start|continuation) byte|unexpected end of data)")
 TOO_DEEP = re.compile(r"maximum recursion depth exceeded(?: (?:while|in) [a-z ]*Python object)?")
-OF_A_TEXT = re.compile(r' in "<unicode string>",')  # PyYAML's name of what roslaunch has read
+OF_A_TEXT = re.compile(r'\sin "<unicode string>",')  # PyYAML's name of what roslaunch has read
 ON_THE_WAY = re.compile(r"^(while processing \S+: )+(?=while processing )")
 
 
