@@ -33,7 +33,7 @@ mkdir -p out 2>/dev/null || true
 models=src/sim/bullet_sim/src/bullet_sim/props.py
 [ ! -f "$models" ] || python3 "$models" || fail "user $(id -u) cannot write in src/sim/bullet_sim"
 worlds=src/compat/turtlebot3_gazebo
-told=$(.venv/bin/python3 -B tools/makers name_packages 2>&1 >/dev/null) || fail "${told##*$'\n'}"
+[ ! -f src/compat/names.yaml ] || told=$(.venv/bin/python3 -B tools/makers name_packages 2>&1 >/dev/null) || fail "${told##*$'\n'}"
 [ ! -d "$worlds" ] || told=$(.venv/bin/python3 -B tools/makers turtlebot3_worlds 2>&1 >/dev/null) || fail "$worlds: ${told##*$'\n'}"
 set +u
 . devel/setup.bash

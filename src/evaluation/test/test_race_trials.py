@@ -45,7 +45,7 @@ def test_seeds_and_tracks_that_are_asked_for():
     trial = RaceTrial()
     found = trial.cases(trial.parse(["--seeds", "3", "--first-seed", "7", "--tracks", "2"]))
     assert [each.seed for each in found[::2]] == [7, 8, 9, 101, 102]
-    assert [each.follower for each in found[:2]] == ["lane_follow.py", "lane_follow_p.py"]
+    assert [each.driver for each in found[:2]] == ["lane_follow.py", "lane_follow_p.py"]
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def trials(tmp_path, monkeypatch, laps, *options: str) -> int:
 
         def judge(self, record):
             case, found = record
-            return replace(found, set=case.set, seed=case.seed, follower=case.follower,
+            return replace(found, set=case.set, seed=case.seed, follower=case.driver,
                            disturbance=draw(case.seed, RACE))
 
     return run_trial(Driven(), ["--tracks", "0", "--out", str(tmp_path / "out"), *options])
