@@ -219,7 +219,7 @@ def test_the_report_comes_before_the_film_and_a_second_ctrl_c_ends_that(
         start, tmp_path, monkeypatch):
     hanging = tmp_path / "bin" / "ffmpeg"
     hanging.parent.mkdir()
-    hanging.write_text('#!/bin/sh\ntouch "$0.started"\nexec sleep 1000\n')
+    hanging.write_text('#!/bin/sh\nhead -c 1 >&2\ntouch "$0.started"\nexec sleep 1000\n')
     hanging.chmod(0o755)
     monkeypatch.setenv("PATH", str(hanging.parent), prepend=os.pathsep)
     run = start(*FILMED)

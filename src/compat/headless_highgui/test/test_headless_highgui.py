@@ -4,6 +4,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import threading
 import time
 import types
 
@@ -133,6 +134,7 @@ class FakePublisher:
     def __init__(self, name, _msg_class, subscriber_listener, queue_size):
         self.resolved_name, self.listener = name.replace("~", "/node/"), subscriber_listener
         self.subscribers, self.sent = 0, []
+        self.thread = threading.current_thread()
         self.publish = self.sent.append
 
     def get_num_connections(self):
@@ -156,6 +158,8 @@ def test_pictures_are_converted_for_subscribers_only(monkeypatch):
     window.show("picture 2")
     assert converted == [] and window.publisher.sent == []
     assert len(said) == 1 and "/node/windows/w" in said[0]
+    # There Ctrl-C would wait for ever for the call to the master that it interrupts.
+    assert window.publisher.thread is not threading.main_thread()
     window.peer_subscribe("w", None, lambda _msg: None)
     assert converted == ["picture 2"]
     window.publisher.subscribers = 1

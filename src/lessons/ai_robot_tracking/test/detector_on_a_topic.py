@@ -9,6 +9,7 @@ import threading
 import time
 import unittest
 from pathlib import Path
+from xmlrpc.client import ServerProxy
 
 import numpy as np
 import rospy
@@ -142,8 +143,8 @@ class Detector(unittest.TestCase):
         heard = []
         subscriber = rospy.Subscriber("/slow/detections", Detection2DArray, heard.append)
         try:
-            # It answers the first picture alone, also where nobody hears it yet.
-            self.wait(subscriber.get_num_connections, "the node's answers")
+            # It answers the first picture alone, also where it has no subscriber yet.
+            self.wait(lambda: has_subscriber("/slow", "/slow/detections"), "the node's answers")
             self.repeat(picture(401), lambda: heard, "an answer at a low rate")
             node.send_signal(signal.SIGINT)
             self.assertEqual(node.wait(timeout=LIMIT), 0)
@@ -151,6 +152,15 @@ class Detector(unittest.TestCase):
             subscriber.unregister()
             node.kill()
             node.wait()
+
+
+def has_subscriber(node, topic):
+    """Whether the node knows of one; rospy's subscriber says it is connected a moment earlier."""
+    try:
+        uri = rospy.get_master().lookupNode(node)[2]
+        return any(entry[2:5:2] == ["o", topic] for entry in ServerProxy(uri).getBusInfo(NODE)[2])
+    except OSError:
+        return False
 
 
 def picture(second, patch=None):

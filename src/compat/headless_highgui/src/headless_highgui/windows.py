@@ -82,7 +82,7 @@ class WindowTopic:
             return
         if self.publisher is None:
             self._open(rospy)
-        if self.publisher.get_num_connections() > 0:
+        if self.publisher is not None and self.publisher.get_num_connections() > 0:
             try:
                 with self._sending:
                     self.publisher.publish(to_msg(image, rospy.Time.now()))
@@ -104,13 +104,23 @@ class WindowTopic:
         """Part of what rospy asks of a listener; nothing to do."""
 
     def _open(self, rospy):
+        # Ctrl-C runs rospy's shutdown in the main thread. It waits for ever for a call to the
+        # master that it interrupted there; a call in another thread it lets end.
+        opening = threading.Thread(target=self._advertise, args=(rospy,), daemon=True)
+        opening.start()
+        opening.join()
+
+    def _advertise(self, rospy):
         from sensor_msgs.msg import Image
 
-        self.publisher = rospy.Publisher(
-            f"~windows/{self.label}", Image, subscriber_listener=self, queue_size=1
-        )
-        rospy.loginfo(translated(
-            f"no screen: the window is the image topic {self.publisher.resolved_name}"))
+        try:
+            self.publisher = rospy.Publisher(
+                f"~windows/{self.label}", Image, subscriber_listener=self, queue_size=1
+            )
+            rospy.loginfo(translated(
+                f"no screen: the window is the image topic {self.publisher.resolved_name}"))
+        except rospy.ROSException:
+            log.debug("the node ended while %s was opened", self.label)
 
 
 def ros_label(name, taken):
