@@ -159,7 +159,7 @@ class _Judgement:
             if (folder not in self._known and not self._missing(verdict, folder)
                     and folder.endswith("_msgs") and answer.kind not in (OURS, DEBIAN)):
                 verdict.lacks.setdefault(
-                    folder, f"{answer.why} ({file} includes <{header}>)")
+                    f"<{header}>", f"{answer.why} ({file} includes it, and will not compile)")
 
 
 def _order(source: Path) -> list[str]:

@@ -27,7 +27,7 @@ UNSPACED = re.compile(r"(?<=[\u4e00-\u9fff])\0+(?=[A-Za-z0-9])"
 NAMES = re.compile(r"[\w./-]+(, [\w./-]+){2,}")  # a list of them stays as it is
 FEWEST_WORDS = 3  # of what stays English; what has fewer is a frame for other texts
 VALUE = "value\4"  # gettext's msgctxt
-LONGEST = 1000  # characters of a line
+LONGEST = 3000  # characters of a line
 DEPTH = 4  # of texts within texts
 
 
