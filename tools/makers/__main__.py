@@ -46,7 +46,7 @@ def main() -> int:
             for target in getattr(maker, "stale", list)() if options.out == ROOT else ():
                 shutil.rmtree(target)
         except OSError as error:
-            print(f"makers: {target}: {error.strerror}", file=sys.stderr)
+            print(f"makers: {error.filename or name}: {error.strerror}", file=sys.stderr)
             return 1
         except RunError as error:
             print(f"makers: {error}", file=sys.stderr)

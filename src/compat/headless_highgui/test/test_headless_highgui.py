@@ -167,6 +167,26 @@ def test_pictures_are_converted_for_subscribers_only(monkeypatch):
     assert converted == ["picture 2", "picture 3"]
 
 
+def test_threads_that_show_one_window_open_one_topic(monkeypatch):
+    made = []
+
+    def publisher(*args, **named):
+        time.sleep(0.05)
+        made.append(FakePublisher(*args, **named))
+        return made[-1]
+
+    rospy = types.SimpleNamespace(Publisher=publisher, is_shutdown=lambda: False,
+                                  loginfo=lambda *_: None, ROSException=RuntimeError)
+    monkeypatch.setattr(windows, "running_rospy", lambda: rospy)
+    window = windows.WindowTopic("w")
+    threads = [threading.Thread(target=window.show, args=("picture",)) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(made) == 1
+
+
 def test_wait_key_waits_as_long_as_asked():
     start = time.monotonic()
     assert Windows(fake_cv2()).waitKey(50) == -1

@@ -74,14 +74,16 @@ class WindowTopic:
         self.publisher = None
         # rospy serialises for all and for a new subscriber into one buffer, the latter unlocked.
         self._sending = threading.Lock()
+        self._opening = threading.Lock()  # several threads may show the first picture
 
     def show(self, image):
         self.image = image
         rospy = running_rospy()
         if rospy is None or rospy.is_shutdown():
             return
-        if self.publisher is None:
-            self._open(rospy)
+        with self._opening:
+            if self.publisher is None:
+                self._open(rospy)
         if self.publisher is not None and self.publisher.get_num_connections() > 0:
             try:
                 with self._sending:
