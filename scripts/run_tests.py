@@ -248,7 +248,7 @@ def judge_unsteady(results: list[Result], known: list[dict], before: list[list[s
     new = [result.name for result in unsteady
            if result.name not in names and not names.issuperset(result.first.failures)]
     show("Failed beside others, passed alone",
-         (failure for result in unsteady for failure in result.first.failures))
+         (line for result in unsteady for line in (*result.first.failures, *reasons(result.first))))
     for name in new:
         print(f"UNSTEADY: {name}: mend it, or name it in test/unsteady.yaml with reason and date")
     if unsteady:
@@ -259,6 +259,12 @@ def judge_unsteady(results: list[Result], known: list[dict], before: list[list[s
         said.append(f"{len(new)} unsteady files that test/unsteady.yaml does not name; "
                     f"at most {MOST_NEW}")
     return new, said
+
+
+def reasons(result: Result) -> list[str]:
+    """The first line of what each failed case says, as pytest marks it."""
+    return [f"  {found[0]}" for each in result.those("failed")
+            if (found := re.findall(r"^E +.+", each.text, re.MULTILINE))]
 
 
 def show(title: str, lines: Iterable[str]) -> None:

@@ -3,6 +3,7 @@
 import os
 import sys
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from datetime import date
 from pathlib import Path
 
@@ -66,6 +67,13 @@ def test_a_file_that_passes_alone_is_forgiven_and_named(runner, monkeypatch, cap
     assert f"UNSTEADY: {FILES[0]}: " in shown
     assert shown.splitlines()[-1] == f"1 unsteady: {FILES[0]}"
     assert runner.show_totals(results) and capsys.readouterr().out == "6 passed, 0 failed\n"
+
+
+def test_an_unsteady_file_is_named_with_its_reason(runner, capsys):
+    text = "    def test_a():\n>       assert 901 == 902\nE       assert 901 == 902\nE        more"
+    first = runner.Result(FILES[0], [runner.Case(FILES[0], "test_a", "failed", text, 0.0)])
+    runner.judge_unsteady([replace(passing(runner, FILES[0]), first=first)], [], [])
+    assert f"  {FILES[0]}: test_a\n    E       assert 901 == 902\nUN" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("known", [{}, {"test": "test_a"}])

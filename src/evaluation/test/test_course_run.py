@@ -192,6 +192,14 @@ def test_time_begins_when_all_are_connected(start):
     assert "without a command" not in run.output
 
 
+def test_the_last_image_is_waited_for(start):
+    run = start(*FAKE, "--fast", "--duration", "5", "--launch-arg", "behaviour:=delays",
+                "--launch-arg", "after:=0.752")
+    assert run.wait() == 1, run.output
+    report = json.loads((run.out / "report.json").read_text())
+    assert report["frames_sent"] == 152 and report["frames_dropped"] == 0
+
+
 def test_a_fast_follower_that_does_not_answer_is_told(start):
     run = start(*FAKE, "--fast", "--duration", "2", "--launch-arg", "behaviour:=mute")
     assert run.wait() == 1, run.output

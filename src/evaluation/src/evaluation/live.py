@@ -196,6 +196,8 @@ def _make_room(drive: LiveDrive) -> None:
 
 
 LOOK_PERIOD = 0.05  # s, wall, between two checks of processes and samples
+# s, wall, to wait for messages still in transit; after Ctrl-C nobody wants to wait
+LAST_MESSAGE_TIME, INTERRUPTED_TIME = 10.0, 1.0
 
 
 class CarDrive(LiveDrive):
@@ -267,9 +269,11 @@ class CarDrive(LiveDrive):
         if self._observer is None:
             return
         if self.drive.samples:
-            self._frames = self._observer.count(self.drive.samples[-1].time)
+            last = self.drive.samples[-1].time
+            limit = LAST_MESSAGE_TIME if self.drive.over else INTERRUPTED_TIME
+            self._frames = self._observer.count(last, limit)
             if self.fingerprints:
-                self.sensor_sums = self.fingerprints.sums(self.drive.samples[-1].time)
+                self.sensor_sums = self.fingerprints.sums(last, limit)
         self._observer.stop()
 
     @property

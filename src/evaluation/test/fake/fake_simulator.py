@@ -24,6 +24,7 @@ SPEED = 0.15  # m/s, simulated
 FRAME_RATE_HZ = 30
 # s, wall, that a frame in lockstep waits for its command: some never come, others must
 MUTE_TIME, ANSWER_TIME = 1.0, 30.0
+DELAY = 1.5  # s, wall, from the odometry to the image, of one that delays
 
 
 class FakeSimulator:
@@ -98,6 +99,8 @@ class FakeSimulator:
             moved = Odometry(header=image.header)
             moved.pose.pose = self.pose
             odometry.publish(moved)
+            if self._behaviour == "delays" and self.time * SPEED > self._after:
+                time.sleep(DELAY)
             self._answered.clear()
             info.publish(CameraInfo(header=image.header))
             images.publish(image)

@@ -109,7 +109,6 @@ def frame_figures(sent: int, commands: int, lockstep_log: list[str] | None) -> d
     return {"frames_sent": sent, "frames_answered": sent - dropped, "frames_dropped": dropped}
 
 
-LAST_MESSAGE_TIME = 1.0  # s, wall, to wait for messages still in transit
 SEQ_AND_STAMP = struct.Struct("<III")  # how a serialised std_msgs/Header begins
 
 
@@ -137,12 +136,13 @@ class Fingerprints:
         with self._lock:
             rows.append(row)
 
-    def sums(self, until: float) -> dict[str, str | None]:
+    def sums(self, until: float, limit: float) -> dict[str, str | None]:
         """For each topic the checksum of its messages up to this simulated time (s).
 
-        None if a message was missed: then the checksum would be meaningless.
+        Waits for messages still in transit, at most `limit` s, wall. None if a message was missed:
+        then the checksum would be meaningless.
         """
-        _wait_for(lambda: self._later_than(until), LAST_MESSAGE_TIME)
+        _wait_for(lambda: self._later_than(until), limit)
         with self._lock:
             return {topic: _sum(rows, until) for topic, rows in self._rows.items()}
 
@@ -161,7 +161,7 @@ def _sum(rows: list[tuple[int, float, bytes]], until: float) -> str | None:
 Seen = tuple[float, float, float, float]  # s, simulated; x, y, m; yaw, rad, in the world
 SAMPLE_RATE_HZ = 25.0
 SETUP_RATE_HZ = 5.0
-LAST_IMAGE_TIME, LAST_COMMAND_TIME = 1.0, 0.1  # s, wall, to wait for them
+LAST_COMMAND_TIME = 0.1  # s, wall, to wait for it
 
 
 class Observer:
@@ -210,13 +210,14 @@ class Observer:
                 found.append(self._samples.get_nowait())
         return found
 
-    def count(self, until: float) -> tuple[int, int]:
+    def count(self, until: float, limit: float) -> tuple[int, int]:
         """Number of images up to this simulated time (s), and of commands received.
 
-        Waits briefly for messages still in transit; later commands answer later images.
+        Waits for images still in transit, at most `limit` s, wall; later commands answer later
+        images.
         """
         frames = self.frames
-        _wait_for(lambda: frames.later_than(until), LAST_IMAGE_TIME)
+        _wait_for(lambda: frames.later_than(until), limit)
         _wait_for(lambda: frames.commands >= frames.sent(until), LAST_COMMAND_TIME)
         return frames.sent(until), frames.commands
 
