@@ -17,8 +17,9 @@ rules += $(if $(findstring $$(WHERE),$(rules)),$(value WHERE))
 given := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
 unknown := $(strip $(foreach name,$(given),$(if $(findstring $$($(name)),$(rules)),,$(name))))
 $(if $(unknown),$(error $(shell scripts/help.sh --no-option "$(MAKECMDGOALS)" $(unknown:==))))
-undecided := $(strip $(foreach name,$(filter BASHRC CONTROL CPP FAST FILM QUICK RESUME,$(given)),$(if $(filter-out 0 1 no yes false true,$($(name))),$(name)=$($(name)))))
-$(if $(undecided),$(error $(shell scripts/help.sh --no-switch "$(undecided)")))
+switches := $(foreach name,BASHRC CONTROL CPP FAST FILM PEOPLE QUICK RESUME,$(if $(findstring $$($(name)),$(rules)),$(name)))
+undecided := $(strip $(foreach name,$(switches),$(if $(filter-out 0 1 no yes false true,$(value $(name))),$(name)=)))
+$(if $(undecided),$(error $(shell scripts/help.sh --no-switch $(undecided))))
 endif
 endif
 

@@ -41,10 +41,8 @@ enter_workspace() {
 
 # Sets up what a trial with these arguments needs.
 set_up_trial() {
-  local options=() word
-  for word in "$@"; do
-    case "$word" in --workers* | --scheduler*) options+=(--workers); break ;; esac
-  done
+  local options=()
+  if [[ " $* " =~ \ --workers[\ =]0*([2-9]|[1-9][0-9]+)\  || " $* " == *" --scheduler"* ]]; then options=(--workers); fi
   "$root/scripts/setup.sh" "${options[@]}" || exit 2
 }
 

@@ -4,7 +4,7 @@
 #   scripts/help.sh
 #   scripts/help.sh --no-command WORD          says that make has no such command, and which is meant
 #   scripts/help.sh --no-option COMMAND WORD...   the same of an option
-#   scripts/help.sh --no-switch NAME=VALUE     says what such an option may be; all three for the Makefile
+#   scripts/help.sh --no-switch NAME=...       says what these options may be; all three for the Makefile
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 # The Makefile's lines for that mark, in the locale's language: $"..." takes constants, so each is made one.
@@ -29,7 +29,7 @@ case "${1:-}" in
     mapfile -t options < <(sed -n "/^${2%% *}:/,/^$/p" "$root/Makefile" | grep -oE '\$\([A-Z_]+\)' | tr -d '$()' | sed 's/^WHERE$/WORKERS\nSCHEDULER/' | sort -u)
     verb=$2 names=${*:3}
     say $"make $verb has no option $names;""$(meant "${3%=}" "${options[@]}")"$" \`make\` alone lists the options of each command" ;;
-  --no-switch) say $"$2: write ${2%%=*}=1, or leave it out" ;;
+  --no-switch) names=${*:2}; say $"$names: write 1 or 0, or leave it out" ;;
   *)
     echo $"usage: make COMMAND [OPTION=VALUE ...]"
     list '##'

@@ -45,7 +45,7 @@ OF_ARGPARSE = (
     "{0}: error: {1}", "the following arguments are required: {0}", "unrecognized arguments: {0}",
     "argument {0}: {1}", "invalid choice: {0} (choose from {1})", "invalid {0} value: {1}",
     "expected one argument", "expected at least one argument", "expected {0} arguments",
-    "not allowed with argument {0}")
+    "not allowed with argument {0}", "one of the arguments {0} is required")
 # Of the system, by the error numbers that a learner meets.
 OF_SYSTEM = (
     "No such file or directory", "Permission denied", "Is a directory", "Not a directory",

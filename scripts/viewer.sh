@@ -17,9 +17,7 @@ for word in "$@"; do
   fi
   arguments+=("$word")
 done
-page_line() { trap '' INT; python3 -c 'from sim_viewer.running_page import running_page
-said = running_page("sim_viewer", "")
-print(said[0] % said[1:] if said else "")' "${arguments[@]/#/_}"; }
+page_line() { trap '' INT; python3 -m sim_viewer.running_page "${arguments[@]/#/_}"; }
 # What a log says went wrong, three lines of it at most; fails if there is none.
 reasons() { grep -a 'runs already\|has died\|FATAL\|ERROR\|Exception' "$1" | tail -n 3 | grep . >&2; }
 if ! choose_master; then

@@ -49,7 +49,8 @@ def test_a_venv_of_another_architecture_is_made_again(
 
 
 @pytest.mark.parametrize(("asked", "options"), [
-    ("", ""), ("--seeds 2", ""), ("--workers 2", "--workers"),
+    ("", ""), ("--seeds 2", ""), ("--workers 2", "--workers"), ("--workers 0", ""),
+    ("--workers=1", ""), ("--workers -2", ""), ("--workers=12", "--workers"),
     ("--seeds 2 --workers=2", "--workers"), ("--scheduler tcp://a:1 --workers 1", "--workers"),
     ("--scheduler=tcp://a:1", "--workers"),
 ])

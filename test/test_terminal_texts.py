@@ -105,7 +105,8 @@ def test_the_scripts_follow_the_locale(environment: dict[str, str], word: str) -
 @pytest.mark.parametrize(("words", "english", "chinese"), [
     ("corse", "make has no command corse; is course meant?", "是不是想输入 course？"),
     ("course LAP=2", "make course has no option LAP=; is LAPS meant?", "是不是想输入 LAPS？"),
-    ("course FAST=maybe", "FAST=maybe: write FAST=1, or leave it out", "请写 FAST=1，或者不写"),
+    ("course FAST=maybe", "FAST=: write 1 or 0, or leave it out", "FAST=：请写 1 或 0，或者不写"),
+    ("lane FAST=' PEOPLE=`", "FAST= PEOPLE=: write 1 or 0, or leave it out", "请写 1 或 0"),
     ("mark WORKER=2", "mark has no option WORKER=; is WORKERS meant?", "是不是想输入 WORKERS？"),
     ("zzz", "make has no command zzz; `make` alone lists them", "单独输入 `make` 会列出所有命令")])
 def test_make_names_the_nearest_command_and_option(words: str, english: str, chinese: str) -> None:

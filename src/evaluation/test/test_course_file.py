@@ -39,7 +39,8 @@ def test_a_folder_that_is_not_ours_is_one_line(capsys):
 
     assert run_program("course_run", write) == NOT_RUN
     assert capsys.readouterr().err == (
-        "course_run: you may not write /out: cd to a folder of yours, or give one with --out\n")
+        "course_run: you may not write /out: cd to a folder of yours, or give one: "
+        "scripts/course.sh --out DIR\n")
 
 
 @pytest.mark.parametrize("values, said", [

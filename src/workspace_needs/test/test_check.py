@@ -520,6 +520,9 @@ def test_what_is_in_a_workspace_is_looked_at_before_it_is_built(workspace):
     ("arm.world", "<sdf", "PROBLEM       world: "),
     ("arm.yaml", "a:\n\tb: 1\n", "PROBLEM       YAML: "),
     ("arm.launch", "<launch><node/></launch>", "PROBLEM       launch file: "),
+    ("arm.launch", "<launch><rosparam>\na: 1\nb: [1, 2\nc: 3\n</rosparam></launch>",
+     "PROBLEM       launch file: YAML in <rosparam>: expected ',' or ']', but got ':'; line 4 of "
+     "it: c: 3\n"),
 ])
 def test_a_fault_in_a_workspaces_file_is_found(workspace, name, text, why):
     code, said = workspace(**{name.replace(".", "__"): text})

@@ -209,6 +209,12 @@ def test_a_catalogue_is_read_once():
     ("rviz has no window here; the page in the browser does its work, tab RViz. Type: roslaunch",
      "浏览器页面的 RViz 标签页"),
     ("line 1: it ends as lines do on Windows, so that no interpreter is found; type: sed x",
-     "行尾是 Windows 的换行符，因此找不到解释器；请输入：sed x")])
+     "行尾是 Windows 的换行符，因此找不到解释器；请输入：sed x"),
+    ("gz model: what is to be done with the model? Type: gz model --help",
+     "gz model: 要对模型做什么？"),
+    ("spawn_model: error: one of the arguments -file -param is required",
+     "必须给出这些参数之一：-file -param"),
+    ('not yet: "a" passed to lookupTransform argument target_frame does not exist. ',
+     '还没有：没有坐标系 "a"（lookupTransform 的参数 target_frame）')])
 def test_no_english_word_is_left_within_a_translated_line(english, part):
     assert part in read_catalogue("zh_CN").translate(english)

@@ -76,6 +76,11 @@ def one_of(kind: str, variable: str, names: Iterable[str], name: str) -> str:
     return name
 
 
+def script_of(program: str) -> str:
+    """The script that runs a program and takes all of its options, which make does not."""
+    return f"scripts/{program.removesuffix('_run')}.sh"
+
+
 PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
 
 
@@ -85,13 +90,15 @@ def run_program(name: str, work: Callable[[], int]) -> int:
         with interruptible():
             return work()
     except PermissionError as refused:
-        complain(name, RunError(f"you may not write {refused.filename}: cd to a folder of yours, "
-                                "or give one with --out") if refused.filename else refused)
+        complain(name, RunError(
+            f"you may not write {refused.filename}: cd to a folder of yours, or give one: "
+            f"{script_of(name)} --out DIR") if refused.filename else refused)
         return NOT_RUN
     except (RunError, TrackError, WorldError, OSError) as failure:
         full = isinstance(failure, OSError) and failure.errno == errno.ENOSPC
-        complain(name, RunError(f"no space left for {failure.filename or 'what is written'}: make "
-                                "room, or give a folder elsewhere with --out") if full else failure)
+        complain(name, RunError(
+            f"no space left for {failure.filename or 'what is written'}: make room, or give a "
+            f"folder elsewhere: {script_of(name)} --out DIR") if full else failure)
         return NOT_RUN
     except KeyboardInterrupt:
         print(f"{name}: interrupted; all processes ended", file=sys.stderr)

@@ -119,10 +119,12 @@ class WindowTopic:
             self.publisher = rospy.Publisher(
                 f"~windows/{self.label}", Image, subscriber_listener=self, queue_size=1
             )
-            rospy.loginfo(translated(
-                f"no screen: the window is the image topic {self.publisher.resolved_name}"))
         except rospy.ROSException:
             log.debug("the node ended while %s was opened", self.label)
+            return
+        if not rospy.is_shutdown():
+            rospy.loginfo(translated(
+                f"no screen: the window is the image topic {self.publisher.resolved_name}"))
 
 
 def ros_label(name, taken):

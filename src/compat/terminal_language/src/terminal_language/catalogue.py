@@ -14,6 +14,7 @@ PLACE = re.compile(r"\{(\d+)\}")
 # "[WARN] [12.3, 4.5]: ".
 AROUND = re.compile(r"((?:\s|\x1b\[[\d;]*[A-Za-z])*(?:\[\w+\] (?:\[[\d., ]+\]: )?)?)(.*?)"
                     r"((?:\s|\x1b\[[\d;]*[A-Za-z])*)", re.DOTALL)
+PROGRAM = re.compile(r"(?:gz )?[A-Za-z_]\w*")  # before its text
 JOINTS = re.compile(r"(: |; )")
 # Such as argparse's default.
 IN_BRACKETS = re.compile(r"(.+)( \((?:[^()]|\([^()]*\))*\))", re.DOTALL)
@@ -110,9 +111,10 @@ class Catalogue:
     def _message(self, text: str, depth: int) -> str | None:
         """The translation of the text, or of its parts between colons and semicolons."""
         name, _, rest = text.partition(": ")
-        if name.isidentifier() and rest in self._exact:  # a program before its text
+        program = PROGRAM.fullmatch(name)
+        if program and rest in self._exact:
             return f"{self._exact.get(name, name)}: {self._exact[rest]}"
-        if (name.isidentifier() and 0 < self._weight(rest) >= self._weight(text)
+        if (program and 0 < self._weight(rest) >= self._weight(text)
                 and (told := self._clause(rest, depth)) is not None):
             return f"{self._exact.get(name, name)}: {told}"
         found = self._clause(text, depth)

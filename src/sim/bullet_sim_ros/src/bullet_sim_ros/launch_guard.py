@@ -56,7 +56,7 @@ def refusal_of(command: list[str]) -> str:
     try:
         refused = [refusal(uri, name) for name in simulators_of(files, command)]
     except (OSError, RLException, ResourceNotFound, ValueError):
-        return ""  # no master; or a fault of the file, which roslaunch reports itself""
+        return ""  # no master; or a fault of the file, which roslaunch reports itself
     return next((form % what for form, what in filter(None, refused)), "")
 
 

@@ -1,4 +1,7 @@
-"""Finds the page that shows this master already, so that a second one does not end it."""
+"""Finds the page that shows this master already, so that a second one does not end it.
+
+As a program, for scripts/viewer.sh: prints the line that says where it is, if there is one.
+"""
 
 import http.client
 import json
@@ -107,3 +110,8 @@ def ask(address: str) -> dict[str, Any]:
     finally:
         connection.close()
     return told if isinstance(told, dict) else {}
+
+
+if __name__ == "__main__":
+    found = running_page("sim_viewer", "")
+    print(found[0] % found[1:] if found else "")

@@ -41,6 +41,8 @@ TOO_MUCH = (f"to read it takes more than {LONGEST:g} s or 1 GiB; look at its $(e
 REPEATED = 20  # a file that is this often in the stack of includes includes itself
 NOT_UTF8 = re.compile(r"'utf-8' codec can't decode .*?: "
                       "(?:invalid (?:start|continuation) byte|unexpected end of data)")
+YAML_BLOCK = re.compile(r'Error within YAML block:.*?([^\n]+)\n +in "<unicode string>", '
+                        r"line (\d+), column \d+:\n *([^\n]*)\n *\^\n\nYAML is:", re.DOTALL)
 TOO_DEEP = re.compile(r"maximum recursion depth exceeded(?: (?:while|in) [a-z ]*Python object)?")
 OF_A_TEXT = re.compile(r'\sin "<unicode string>",')  # PyYAML's name of what roslaunch has read
 ON_THE_WAY = re.compile(r"^(while processing \S+: )+(?=while processing )")
@@ -153,6 +155,8 @@ def _error_line(error: Exception) -> str:
     if isinstance(error, rospkg.ResourceNotFound):
         return (f"no package {error.args[0]} is found: source the devel/setup.bash of its "
                 "workspace first")
+    if block := YAML_BLOCK.search(str(error)):
+        return f"YAML in <rosparam>: {block[1]}; line {block[2]} of it: {block[3]}"
     text = " ".join(str(error).split()) or type(error).__name__
     text = OF_A_TEXT.sub(" at", ON_THE_WAY.sub("", text))
     text = NOT_UTF8.sub("it is not UTF-8; save it as UTF-8", text)

@@ -14,7 +14,7 @@ from workspace_needs.workspace import SOURCES
 
 LONGEST = 256  # bytes that Linux reads of a first line
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
-PYTHON = "write #!/usr/bin/env python3 there"
+PYTHON = "#!/usr/bin/env python3"
 # With bounds, so that the time is linear.
 HINTS = re.compile(rb"\bTransportHints\b[^;\n\"]{0,200}\(\s{0,200}\"(\w+)\"")
 TRANSPORTS = {"compressed": "compressed_image_transport", "theora": "theora_image_transport",
@@ -92,7 +92,7 @@ def _fault(line: bytes, path: Path) -> str:
         return ("a byte order mark stands before #!, so that no interpreter is found; type: "
                 f"{command}")
     if not line.startswith(b"#!"):
-        return (f"it has no #!, so that rosrun starts it as a shell script; {PYTHON}"
+        return (f"it has no #!, so that rosrun starts it as a shell script; write {PYTHON} there"
                 if _is_script(path) and not line.startswith(b"\x7fELF") else "")
     if line.endswith(b"\r"):
         command = rf"sed -i 's/\r$//' {shlex.quote(str(path))}"
@@ -105,4 +105,4 @@ def _fault(line: bytes, path: Path) -> str:
     if name and shutil.which(name):
         return ""
     return f"there is no {name or 'interpreter'!s} here" + (
-        f"; {PYTHON}" if "python" in name else "")
+        f"; write {PYTHON} there" if "python" in name else "")
