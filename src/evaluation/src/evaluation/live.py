@@ -126,7 +126,9 @@ def run_live(drive: LiveDrive) -> int:
                 launched.start_roscore()
                 if why := launched.why_not_callers:
                     drive.progress.say(why[0] % why[1:])
-                drive.progress.say(f"watch it: export ROS_MASTER_URI={launched.master_uri}")
+                drive.progress.say(
+                    "watch it, in another terminal: source devel/setup.bash; export "
+                    f"ROS_MASTER_URI={launched.master_uri}; roslaunch sim_viewer viewer.launch")
                 drive.bring_up(launched)
                 outcome = drive.watch(launched)
             except (KeyboardInterrupt, RunError) as ended:
