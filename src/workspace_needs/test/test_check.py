@@ -515,6 +515,16 @@ def test_what_is_in_a_workspace_is_looked_at_before_it_is_built(workspace):
     assert "robots and YAML" not in said
 
 
+@pytest.mark.parametrize("cmake, code, words", [
+    ("", 0, "works         build"),
+    ("add_executable(see see.cpp)", 1, "PROBLEM       build: see.cpp will not compile: the header "
+                                       "<strange_msgs/Thing.h> is not here: neither")])
+def test_a_header_that_nobody_has_matters_where_a_target_includes_it(workspace, cmake, code, words):
+    got, said = workspace(cmake, see__cpp="#include <strange_msgs/Thing.h>\nint main() {}\n")
+    assert got == code and words in said and "will be without" not in said
+    assert ("works         build" in said) is (code == 0)
+
+
 @pytest.mark.parametrize("name, text, why", [
     ("arm.urdf", "<robot", "PROBLEM       robot: "),
     ("arm.world", "<sdf", "PROBLEM       world: "),

@@ -238,10 +238,18 @@ def test_catkin_make_leaves_out_what_waits_for_a_package_of_debian(tmp_path, cap
 
 
 def test_a_header_of_messages_that_nobody_has_is_told(tmp_path, bare):
-    folder = add_package(tmp_path / "src", "a", "")
-    (folder / "a.cpp").write_text("#include <nothing_msgs/X.h>\n", encoding="utf-8")
-    why = of(tmp_path / "src", "a").lacks["<nothing_msgs/X.h>"]
-    assert why.endswith("(a.cpp includes it, and will not compile)")
+    folder = add_package(tmp_path / "src", "a", "", "", "add_executable(a src/a.cpp)")
+    (folder / "include/a").mkdir(parents=True)
+    for name in ("src/a.cpp", "src/unused.cpp", "include/a/seen.h", "include/a/unused.h"):
+        (folder / name).write_text("#include <nothing_msgs/X.h>\n", encoding="utf-8")
+    with (folder / "src/a.cpp").open("a", encoding="utf-8") as file:
+        file.write("#include \"a/seen.h\"\n")
+    found = of(tmp_path / "src", "a")
+    assert found.uncompiled == dict.fromkeys(
+        ("include/a/seen.h", "src/a.cpp"), "the header <nothing_msgs/X.h> is not here: neither "
+        "Debian nor this repository has it; clone its source into src/, or mend the name")
+    assert not found.lacks
+    assert "a: src/a.cpp will not compile: the header" in "\n".join(command.not_to_be_had([found]))
 
 
 def test_a_package_is_not_told_to_name_what_it_names(tmp_path, bare):

@@ -68,6 +68,8 @@ def not_to_be_had(verdicts: Iterable[Verdict]) -> list[str]:
                   for key, why in verdict.clashes.items()]
         lines += [f"{verdict.name}: {file} is left out: {why}"
                   for file, why in verdict.left_out.items()]
+        lines += [f"{verdict.name}: {file} will not compile: {why}"
+                  for file, why in verdict.uncompiled.items()]
         lines += [f"{verdict.name} will be without {key}: {why}"
                   for key, why in verdict.lacks.items()]
     return lines

@@ -46,6 +46,7 @@ class Configured:
     left_out: tuple[tuple[str, str], ...] = ()  # targets without their sources, and why
     targets: tuple[str, ...] = ()  # its programs and libraries
     programs: tuple[str, ...] = ()  # file names of what rosrun starts once it is built
+    sources: tuple[str, ...] = ()  # what its targets compile, by the path below its folder
 
 
 def configure(packages: Iterable[Package], words: Iterable[str] = ()) -> dict[str, Configured]:
@@ -104,7 +105,7 @@ def _circle(name: str, packages: Mapping[str, Package]) -> list[str]:
 def _result(kept: Mapping) -> Configured:
     return Configured(kept["error"], tuple(kept["absent"]),
                       tuple((target, why) for target, why in kept["left_out"]),
-                      tuple(kept["targets"]), tuple(kept["programs"]))
+                      *(tuple(kept[key]) for key in ("targets", "programs", "sources")))
 
 
 def _with_dependencies(names: Iterable[str], graph: Mapping[str, set[str]]) -> set[str]:
@@ -162,6 +163,7 @@ class _Run:
                 target["nameOnDisk"] for target in targets if target["type"] == "EXECUTABLE"
                 and target["name"] not in dict(left_out)}
             return Configured(left_out=left_out, programs=tuple(sorted(programs)),
+                              sources=_sources(targets),
                               targets=tuple(target["name"] for target in targets))
         shutil.rmtree(place / "devel" / name, ignore_errors=True)  # so that no other finds it
         absent = place / f"{name}.absent"
@@ -218,6 +220,12 @@ def _targets(build: Path, folder: Path) -> list[dict]:
         if target["type"] != "UTILITY" and folder in (place, *place.parents):
             found.append(target)
     return found
+
+
+def _sources(targets: Iterable[Mapping]) -> tuple[str, ...]:
+    """The files that these targets compile."""
+    return tuple(sorted({source["path"] for target in targets
+                         for source in target.get("sources", ()) if "compileGroupIndex" in source}))
 
 
 def _pretend_built(targets: Iterable[Mapping], folder: Path) -> None:

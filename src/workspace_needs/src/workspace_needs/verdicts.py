@@ -31,6 +31,7 @@ class Verdict:
     stops: dict[str, str] = field(default_factory=dict)  # obstacle to building it: reason
     lacks: dict[str, str] = field(default_factory=dict)  # missing, but not needed to build: reason
     left_out: dict[str, str] = field(default_factory=dict)  # target or source file: reason
+    uncompiled: dict[str, str] = field(default_factory=dict)  # a target's source file: reason
     clashes: dict[str, str] = field(default_factory=dict)  # stops for catkin_make alone: reason
     programs: tuple[str, ...] | None = None  # what rosrun starts once it is built; None: unknown
     hides_ours: bool = False  # it is left out because our package of its name must be found
@@ -102,7 +103,7 @@ class _Judgement:
                     *verdict.stops} and self._answers[asked.key].kind not in (OURS, DEBIAN):
                 verdict.lacks.setdefault(
                     asked.key, f"{self._answers[asked.key].why} ({asked.where} asks for it)")
-        self._look_at_includes(verdict, package)
+        self._look_at_includes(verdict, package, _compiled(package, result))
         if result and not result.error:
             verdict.left_out = {f"target {target}": why for target, why in result.left_out}
             verdict.programs = result.programs
@@ -145,7 +146,7 @@ class _Judgement:
         return {name, other} <= set(self._order) and (
             self._order.index(name) > self._order.index(other))
 
-    def _look_at_includes(self, verdict: Verdict, package: Package) -> None:
+    def _look_at_includes(self, verdict: Verdict, package: Package, compiled: set[str]) -> None:
         for header, file in package.includes:
             folder = header.partition("/")[0]
             if folder == header or any(Path(place, header).exists() for place in INCLUDE_FOLDERS):
@@ -156,10 +157,24 @@ class _Judgement:
                 verdict.left_out.setdefault(file, f"it includes <{header}>: {absence.why}")
                 continue
             answer = self._answers[folder]
-            if (folder not in self._known and not self._missing(verdict, folder)
+            if (file in compiled and folder not in self._known
+                    and not self._missing(verdict, folder)
                     and folder.endswith("_msgs") and answer.kind not in (OURS, DEBIAN)):
-                verdict.lacks.setdefault(
-                    f"<{header}>", f"{answer.why} ({file} includes it, and will not compile)")
+                verdict.uncompiled.setdefault(
+                    file, f"the header <{header}> is not here: {answer.why}")
+
+
+def _compiled(package: Package, result: Configured | None) -> set[str]:
+    """The sources of a package's targets, and its headers that these include."""
+    found = set(result.sources) if result else set()
+    files = [str(path.relative_to(package.folder)) for path in package.files]
+    reached = True
+    while reached:
+        headers = {header for header, file in package.includes if file in found}
+        reached = {file for file in files if file not in found
+                   and any(f"/{file}".endswith(f"/{header}") for header in headers)}
+        found |= reached
+    return found
 
 
 def _order(source: Path) -> list[str]:

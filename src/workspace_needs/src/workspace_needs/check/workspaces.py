@@ -81,6 +81,8 @@ def _of_package(verdict: Verdict, workspace: Path) -> list[Finding]:
               for name, key in verdict.missing.items()]
     found += [Finding(where, key, ABSENT, f"it will be without: {why}")
               for key, why in verdict.lacks.items()]
-    if not (verdict.stops or verdict.missing or any(key.startswith("<") for key in verdict.lacks)):
+    found += [Finding(where, "build", PROBLEM, f"{file} will not compile: {why}")
+              for file, why in verdict.uncompiled.items()]
+    if not (verdict.stops or verdict.missing or verdict.uncompiled):
         found.append(Finding(where, "build", WORKS))
     return found
