@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """gz lists, spawns, moves and deletes models of a running simulator; killall finds that one."""
 
+import os
 import subprocess
 import sys
 import tempfile
@@ -11,7 +12,7 @@ from xmlrpc.client import ServerProxy
 import rosgraph
 import rospy
 import rostest
-from gazebo_msgs.srv import GetWorldProperties
+from gazebo_msgs.srv import GetWorldProperties, GetWorldPropertiesResponse
 
 LIMIT = 60.0  # s
 BLOCK = """<sdf version="1.6"><model name="block"><static>true</static><link name="l">
@@ -19,10 +20,11 @@ BLOCK = """<sdf version="1.6"><model name="block"><static>true</static><link nam
 </sdf>"""
 
 
-def gz(*words, piped=""):
+def gz(*words, piped="", namespace="/"):
     """Exit code and output, then errors."""
     done = subprocess.run(["gz", *words], capture_output=True, text=True, timeout=LIMIT,
-                          check=False, input=piped)
+                          check=False, input=piped,
+                          env=os.environ | {"ROS_NAMESPACE": namespace})
     return done.returncode, done.stdout, done.stderr
 
 
@@ -45,6 +47,15 @@ class GzStory(unittest.TestCase):
         self.assertEqual(gz("model", "-m", "block", "-d"), (0, "", ""))
         code, _, said = gz("model", "-m", "block", "-p")
         self.assertEqual((code, said), (1, "gz model: GetModelState: model does not exist\n"))
+
+    def test_ros_namespace_names_a_simulator(self):
+        other = rospy.Service("/b/gazebo/get_world_properties", GetWorldProperties,
+                              lambda _: GetWorldPropertiesResponse(
+                                  model_names=["of_b"], success=True))
+        self.addCleanup(other.shutdown)
+        self.assertEqual(gz("model", "--list", namespace="b"), (0, "of_b\n", ""))
+        self.assertNotIn("of_b", gz("model", "--list")[1])
+        self.assertNotIn("of_b", gz("model", "--list", namespace="c")[1])
 
     def test_the_world_stands_still_and_goes_on(self):
         for word in ("-p1", "-p0", "-r", "-o"):

@@ -3,6 +3,7 @@
 import subprocess
 
 import pytest
+from gazebo_ros.gz import GzError, chosen
 
 ROBOT = """<robot name="cart">
 <link name="body"><inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0"
@@ -61,3 +62,19 @@ def test_a_master_uri_that_is_none_is_one_line(monkeypatch):
     done = gz("model", "--list")
     assert (done.returncode, done.stderr) == (
         1, "gz model: invalid master URI: http://localhost:1x\n")
+
+
+@pytest.mark.parametrize("running, own, expected", [
+    (["/a/gazebo", "/b/gazebo"], "/b/gazebo", "/b/gazebo"),
+    (["/a/gazebo", "/gazebo"], "/b/gazebo", "/gazebo"),
+    (["/a/gazebo"], "/gazebo", "/a/gazebo")])
+def test_the_simulator_to_talk_to(running, own, expected):
+    assert chosen(running, own, []) == expected
+
+
+def test_of_several_simulators_one_is_to_be_named():
+    with pytest.raises(GzError) as said:
+        chosen(["/a/gazebo", "/b/gazebo"], "/c/gazebo", ["model", "-m", "my car", "-p"])
+    assert str(said.value) == (
+        "several simulators run: /a/gazebo, /b/gazebo. Name the namespace of one, as in: "
+        "ROS_NAMESPACE=a gz model -m 'my car' -p")

@@ -3,6 +3,7 @@
 import argparse
 import logging
 import os
+import shlex
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -27,6 +28,7 @@ from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.sdf.writing import VERSION, sdf_text
 from bullet_sim.formats.xml_text import decoded, parse_xml, read_xml_file
 from bullet_sim.pose import quaternion_from_rpy, rpy_from_quaternion
+from gazebo_ros.running import simulators
 
 ELSEWHERE = {
     "camera": "roslaunch sim_viewer viewer.launch, for the page in the browser",
@@ -149,7 +151,8 @@ def _spawn(options: argparse.Namespace) -> None:
 
 def _become_spawn_model(options: argparse.Namespace, *words: str) -> None:
     place = [word for axis, value in _given(options).items() for word in (f"-{axis}", str(value))]
-    _become("rosrun", "gazebo_ros", "spawn_model", *words, *place)
+    _become("rosrun", "gazebo_ros", "spawn_model", *words, *place,
+            "-gazebo_namespace", _simulator())
 
 
 def _spawn_piped(options: argparse.Namespace) -> None:
@@ -215,16 +218,38 @@ def _become(*words: str) -> None:
     os.execvp(words[0], words)
 
 
-def _call(name: str, kind: type, *request):
-    """The answer of a service of /gazebo; GzError if there is none, or if it says no."""
-    service = f"/gazebo/{name}"
+def _simulator() -> str:
+    """The full name of the simulator to talk to; GzError if there is none."""
     try:
-        rosgraph.Master("/gz").lookupService(service)
-        answer = rospy.ServiceProxy(service, kind)(*request)
+        running = simulators("get_world_properties")
     except (OSError, rosgraph.MasterException):
         raise GzError(NOT_RUNNING) from None
     except ValueError as error:  # ROS_MASTER_URI is no URI
         raise GzError(str(error)) from None
+    return chosen(running, rospy.resolve_name("gazebo"), sys.argv[1:])
+
+
+def chosen(running: list[str], own: str, words: list[str]) -> str:
+    """Of the simulators that run that of our own namespace, or /gazebo, or the only one.
+
+    GzError with what to type, given gz's arguments, if there are none or several others.
+    """
+    if not running:
+        raise GzError(NOT_RUNNING)
+    for name in (own, "/gazebo"):
+        if name in running:
+            return name
+    if len(running) > 1:
+        namespace = running[0].removesuffix("/gazebo").strip("/")
+        raise GzError(f"several simulators run: {', '.join(running)}. Name the namespace of one, "
+                      f"as in: ROS_NAMESPACE={namespace} {shlex.join(['gz', *words])}")
+    return running[0]
+
+
+def _call(name: str, kind: type, *request):
+    """The answer of the simulator's service; GzError if there is none, or if it says no."""
+    try:
+        answer = rospy.ServiceProxy(f"{_simulator()}/{name}", kind)(*request)
     except rospy.ServiceException as error:
         raise GzError(str(error)) from None
     if not getattr(answer, "success", True):
