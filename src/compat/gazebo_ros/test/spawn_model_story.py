@@ -192,6 +192,12 @@ class SpawnModelStory(unittest.TestCase):
         said, _ = process.communicate(timeout=LIMIT)
         self.assertEqual((process.returncode, late.names()), (0, ["spawn_urdf_model"]), said)
 
+    def test_a_simulator_in_another_namespace_is_named(self):
+        process = self.start_before_the_simulator("/one/gazebo")
+        self.assertIn(
+            "Nobody offers /one/gazebo/spawn_urdf_model. A simulator runs as: /gazebo "
+            "(spawn_model: -gazebo_namespace /gazebo)", process.stdout.readline())
+
     def test_stopped_before_there_is_a_simulator(self):
         # conforms: spawn_model/exit codes
         process = self.start_before_the_simulator("/never")
