@@ -73,9 +73,12 @@ def test_switches():
 def test_no_manager():
     service = "/car/controller_manager/load_controller"
     assert "A controller manager answers in: /arm, /racecar " in client.absence(
-        service, ["/arm", "/racecar"])
-    assert "no controller manager in any namespace" in client.absence(service, [])
-    assert client.absence(service, ["/car"]).endswith(
+        service, ["/arm", "/racecar"], ["/gazebo"])
+    assert "no controller manager in any namespace" in client.absence(service, [], [])
+    assert ("namespace. A simulator runs as: /x/y/gazebo, /z/gazebo. Has the robot come into its "
+            "world (rosservice call /x/y/gazebo/get_world_properties)") in client.absence(
+        service, [], ["/x/y/gazebo", "/z/gazebo"])
+    assert client.absence(service, ["/car"], []).endswith(
         " yet: the controller manager in /car is starting")
 
 

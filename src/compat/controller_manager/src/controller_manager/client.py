@@ -53,8 +53,12 @@ class ManagerClient:
             return True
         if timeout is not None and timeout <= NOTICE_AFTER:
             return False
-        notice(absence(rospy.resolve_name(self.name(service)), managers()))
+        notice(self.absence(service))
         return self._comes(service, None if timeout is None else timeout - first)
+
+    def absence(self, service: str) -> str:
+        """Why the service is not there, as the master has it."""
+        return absence(rospy.resolve_name(self.name(service)), managers(), simulators())
 
     def _comes(self, service: str, timeout: float | None) -> bool:
         try:
@@ -91,15 +95,26 @@ class ManagerClient:
 
 
 def managers() -> list[str]:
-    """The namespaces in which some manager offers its services, as the master has it."""
-    ending = "/controller_manager/list_controllers"
+    """The namespaces in which some manager offers its services."""
+    return [name or "/" for name in _offering("/controller_manager/list_controllers")]
+
+
+def simulators() -> list[str]:
+    """The nodes that are simulators, such as /gazebo."""
+    return _offering("/spawn_urdf_model")
+
+
+def _offering(ending: str) -> list[str]:
+    """What comes before this ending in the names of the master's services."""
     _, _, services = rosgraph.Master(rospy.get_name()).getSystemState()
-    return sorted(name.removesuffix(ending) or "/" for name, _ in services
-                  if name.endswith(ending))
+    return sorted(name.removesuffix(ending) for name, _ in services if name.endswith(ending))
 
 
-def absence(service: str, namespaces: list[str]) -> str:
-    """Why nothing answers under a manager's service name, and what to type next."""
+def absence(service: str, namespaces: list[str], worlds: list[str]) -> str:
+    """Why nothing answers under a manager's service name, and what to type next.
+
+    Given the namespaces with a manager, and the simulators.
+    """
     own = service.rpartition("/controller_manager/")[0] or "/"
     if own in namespaces:
         return f"Nobody offers {service} yet: the controller manager in {own} is starting"
@@ -108,5 +123,10 @@ def absence(service: str, namespaces: list[str]) -> str:
         return (f"Nobody offers {service}. A controller manager answers in: {there} "
                 f"(spawner: --namespace={namespaces[0]}; other tools: "
                 f"ROS_NAMESPACE={namespaces[0]} before rosrun)")
+    if worlds:
+        return (f"Nobody offers {service}, and there is no controller manager in any namespace. "
+                f"A simulator runs as: {', '.join(worlds)}. Has the robot come into its world "
+                f"(rosservice call {worlds[0]}/get_world_properties), and has the robot's URDF "
+                "the plugin libgazebo_ros_control.so?")
     return (f"Nobody offers {service}, and there is no controller manager in any namespace: is the "
             "simulator running, and has the robot's URDF the plugin libgazebo_ros_control.so?")

@@ -9,7 +9,7 @@ import rospy
 from std_msgs.msg import Bool
 
 from controller_manager import configuration, diagnosis
-from controller_manager.client import ManagerClient, absence, managers
+from controller_manager.client import ManagerClient
 from controller_manager.lifetime import POLL_PERIOD, live
 
 NEEDED = ("load_controller", "switch_controller", "unload_controller")
@@ -82,7 +82,7 @@ class Spawner:
                 continue
             rospy.logwarn("Controller Spawner couldn't find the expected controller_manager "
                           "ROS interface.")
-            rospy.logwarn(absence(rospy.resolve_name(self._manager.name(service)), managers()))
+            rospy.logwarn(self._manager.absence(service))
             return False
         return True
 
