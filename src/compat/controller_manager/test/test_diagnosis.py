@@ -43,6 +43,14 @@ def test_a_mistyped_name():
                     "Did you mean left_wheel?")
 
 
+def test_a_mistyped_name_with_a_slash():
+    for name in ("arm/j2", "/arm/j2"):
+        line = diagnosis.not_configured(name, "/lab", ["/lab/arm/j1/type", "/lab/x/type"])
+        assert line.endswith("in /lab there are: arm/j1. Did you mean arm/j1?")
+    line = diagnosis.not_configured("arm/j2", "/arm", ["/arm/j1/type"])
+    assert line == "parameter /arm/arm/j2/type is not set; in /arm there are: j1"
+
+
 def test_a_namespace_instead_of_a_controller():
     line = diagnosis.not_configured("racecar", "/", ["/racecar/left/type", "/racecar/right/type"])
     assert line == ("racecar is a namespace with the controllers left, right: "

@@ -24,6 +24,13 @@ def _configured(namespace: str, parameters: Collection[str]) -> list[str]:
                   if name.endswith("/type") and name.count("/") == 1)
 
 
+def _beside(name: str, namespace: str, parameters: Collection[str]) -> list[str]:
+    """The controllers in the part of the namespace that the name says, else in the namespace."""
+    folder = name.strip("/").rpartition("/")[0]
+    inside = _configured(_join(namespace, folder), parameters) if folder else []
+    return [_join(folder, other) for other in inside] or _configured(namespace, parameters)
+
+
 def _below(namespace: str, name: str, parameters: Collection[str]) -> str:
     """The controller's name without the part that the namespace says already; "" if none is."""
     parts = name.strip("/").split("/")
@@ -50,7 +57,7 @@ def not_configured(name: str, namespace: str, parameters: Collection[str]) -> st
     load = f'<rosparam command="load" file="..." ns="{namespace}"/>'
     if elsewhere := sorted(p for p in parameters if p.endswith(f"/{name}/type")):
         return f"{reason}, but {elsewhere[0]} is: load the YAML file into {namespace}, {load}"
-    others = _configured(namespace, parameters)
+    others = _beside(name, namespace, parameters)
     if not others:
         return f"{reason}, nor is any controller's in {namespace}: load the YAML file, {load}"
     close = difflib.get_close_matches(name, others, 1)
