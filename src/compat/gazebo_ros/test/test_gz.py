@@ -36,6 +36,29 @@ def test_what_is_no_model_is_one_line(tmp_path, text, reason):
     assert done.stderr.startswith("gz sdf: ") and reason in done.stderr
 
 
+WORLD = """<sdf version="1.6"><world name="w"><include><uri>model://{}</uri></include></world>
+</sdf>"""
+
+
+@pytest.mark.parametrize("option", ["-k", "-p"])
+def test_models_are_searched_as_by_the_simulator(tmp_path, option):
+    (tmp_path / "w.world").write_text(WORLD.format("turtlebot3_autorace/course"))
+    for name in ("w.world", "model://turtlebot3_autorace/course"):
+        done = gz("sdf", option, name, cwd=tmp_path)
+        assert (done.returncode, done.stderr) == (0, "") and done.stdout
+
+
+@pytest.mark.parametrize("option", ["-k", "-p"])
+def test_a_model_that_is_not_there_is_a_failure(tmp_path, option):
+    (tmp_path / "w.world").write_text(WORLD.format("nothere"))
+    done = gz("sdf", option, "w.world", cwd=tmp_path)
+    assert done.returncode == 1 and "Check complete" not in done.stdout
+    assert "model://nothere not found" in done.stderr
+    assert done.stderr.endswith("gz sdf: w.world has mistakes: 1; each is a line above\n")
+    done = gz("sdf", option, "model://nothere", cwd=tmp_path)
+    assert done.returncode == 1 and "model://nothere not found" in done.stderr
+
+
 @pytest.mark.parametrize("steps", ["0", "-1", "two"])
 def test_what_is_no_number_of_steps_is_named(steps):
     done = gz("world", "-m", steps)

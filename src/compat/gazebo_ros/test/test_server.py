@@ -55,6 +55,7 @@ def start(tmp_path):
     package = tmp_path / "bullet_sim_ros"
     package.mkdir()
     (package / "__init__.py").touch()
+    (package / "package_paths.py").write_text("def missing_world(name): return ''")
     (package / "__main__.py").write_text(FAKE_NODE)
     running = []
 
@@ -102,6 +103,17 @@ def test_gazebo_typed_is_roslaunch_with_the_world_and_the_page(start, tmp_path):
     assert said.splitlines() == [
         "gazebo_ros", "empty_world.launch", "gui:=false", "viewer:=true", "server_required:=true",
         f"extra_gazebo_args:=-u '{tmp_path}/my own.world'"]
+
+
+def test_a_world_that_is_not_there_ends_it_without_a_master(tmp_path):
+    for name in ("gazebo", "gzserver"):
+        done = subprocess.run(
+            [sys.executable, SCRIPTS / name, "nothere.world"], text=True, cwd=tmp_path, timeout=60,
+            env=os.environ | {"ROS_MASTER_URI": "http://127.0.0.1:9"}, capture_output=True,
+            check=False)
+        assert (done.returncode, done.stdout) == (1, "")
+        assert done.stderr.startswith("[FATAL] Could not open file nothere.world: ")
+        assert done.stderr.count("\n") == 1
 
 
 @pytest.mark.parametrize("name", ["gzserver", "gzclient", "gazebo", "debug"])

@@ -9,7 +9,6 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import rosgraph
-import rospkg
 import rospy
 from gazebo_msgs.msg import ModelState
 from gazebo_msgs.srv import (
@@ -24,10 +23,11 @@ from std_srvs.srv import Empty
 
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats.loading import load_model, load_world
-from bullet_sim.formats.resources import Resources
+from bullet_sim.formats.sdf.include import model_file
 from bullet_sim.formats.sdf.writing import VERSION, sdf_text
 from bullet_sim.formats.xml_text import decoded, parse_xml, read_xml_file
 from bullet_sim.pose import quaternion_from_rpy, rpy_from_quaternion
+from bullet_sim_ros.package_paths import open_resources
 from gazebo_ros.running import simulators
 
 ELSEWHERE = {
@@ -48,6 +48,17 @@ PLACE = ("x", "y", "z", "R", "P", "Y")  # m, and rad about fixed axes
 
 class GzError(Exception):
     """The command failed; the message is the line to print."""
+
+
+class _Mistakes(logging.Handler):
+    """Counts the lines about what a file has wrong."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.ERROR)
+        self.number = 0
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.number += 1
 
 
 def parser() -> argparse.ArgumentParser:
@@ -100,18 +111,22 @@ def run_sdf(options: argparse.Namespace) -> None:
     if options.version:
         print(VERSION)
         return
-    root = _root(options.check or options.print)
-    resources = Resources.from_environment(find_package=rospkg.RosPack().get_path)
+    name, resources = options.check or options.print, open_resources()
+    if "://" in name:
+        name = str(model_file(resources.resolve(name)))
+    root, mistakes = _root(name), _Mistakes()
+    logging.getLogger("bullet_sim").addHandler(mistakes)
     if root.tag != "robot" and root.find("world") is not None:
-        load_world(options.check or options.print, resources)
+        load_world(name, resources)
     else:
         model = load_model(ElementTree.tostring(root, encoding="unicode"), resources)
+    if options.print:
+        print(sdf_text(model) if root.tag == "robot"
+              else ElementTree.tostring(root, encoding="unicode"))
+    if mistakes.number:
+        raise GzError(f"{name} has mistakes: {mistakes.number}; each is a line above")
     if options.check:
         print("Check complete")
-    elif root.tag == "robot":
-        print(sdf_text(model))
-    else:
-        print(ElementTree.tostring(root, encoding="unicode"))
 
 
 def _root(name: str) -> ElementTree.Element:

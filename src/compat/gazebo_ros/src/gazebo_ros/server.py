@@ -65,7 +65,11 @@ def main(python_options: tuple[str, ...] = (), hint: str = "") -> None:
 def launch() -> None:
     """Become roslaunch with this command line's world and the page; it starts a missing master."""
     words = sys.argv[1:]
-    parser("gazebo").parse_known_args(words)  # -h and -v end here
+    options, _ = parser("gazebo").parse_known_args([word for word in words if ":=" not in word])
+    from bullet_sim_ros.package_paths import missing_world  # its imports would delay gzserver
+
+    if missing := missing_world(options.world):  # roslaunch would end with 0
+        sys.exit(f"[FATAL] {missing}")
     # roslaunch starts nodes in another folder
     words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in words]
     os.execvp("roslaunch", [

@@ -78,6 +78,15 @@ def open_resources(environ: Mapping[str, str] = os.environ) -> Resources:
     )
 
 
+def missing_world(name: str) -> str:
+    """Why a world's file cannot be opened, for who has no ROS master yet; "" if it is there."""
+    try:
+        open_resources().find_world(name)
+    except ResourceNotFound as error:
+        return f"Could not open file {name}: {error}"
+    return ""
+
+
 def _exports(packages: dict[str, Package], attribute: str) -> list[Path]:
     """The paths of `<export><gazebo_ros ATTRIBUTE="${prefix}/a:${prefix}/b"/>` in all packages."""
     found: dict[Path, None] = {}
