@@ -92,3 +92,22 @@ def test_world_is_looked_up_here_then_in_the_resource_paths(tmp_path, monkeypatc
 def test_what_is_not_there(uri, message):
     with pytest.raises(ResourceNotFound, match=message):
         Resources(["/m"]).resolve(uri)
+
+
+@pytest.mark.parametrize("uri, meant", [
+    ("model://tabel", "table"), ("model://tabel/meshes/top.dae", "table"),
+    ("model://table/mesh/top.dae", "meshes"), ("model://table/meshes/tob.dae", "top.dae")])
+def test_the_name_that_is_meant(tmp_path, uri, meant):
+    (tmp_path / "b/table/meshes").mkdir(parents=True)
+    (tmp_path / "b/table/meshes/top.dae").touch()
+    (tmp_path / "a").mkdir()
+    with pytest.raises(ResourceNotFound) as caught:
+        Resources([tmp_path / "a", tmp_path / "b", tmp_path / "gone"]).resolve(uri)
+    assert str(caught.value).endswith(f"(did you mean {meant}?)")
+
+
+def test_the_world_in_this_folder_that_is_meant(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "yard.world").touch()
+    with pytest.raises(ResourceNotFound, match=r"\(did you mean yard\.world\?\)"):
+        Resources().find_world("yart.world")

@@ -59,16 +59,18 @@ def nearest_file(path: Path | str) -> str:
 
 
 class ResourceNotFound(SimulationError):
-    """A URI or file name is in none of the searched folders."""
+    """A URI or file name is in none of the searched folders; `hint`: the end of a line."""
 
-    def __init__(self, uri: str, searched: Iterable[str] = (), known: Iterable[str] = ()):
+    def __init__(self, uri: str, searched: Iterable[str] = (), known: Iterable[str] = (),
+                 hint: str = ""):
         self.uri = uri
+        self.hint = hint
         self.searched = tuple(str(place) for place in searched)
         places = ", ".join(self.searched) or "nowhere to look"
         by_name = {Path(name).name: name for name in known}
         there_are = f"; there are: {', '.join(by_name.values())}" if by_name else ""
         super().__init__(f"{uri} not found (searched: {places})"
-                         f"{did_you_mean(Path(uri).name, by_name, 0.75)}{there_are}")
+                         f"{hint or did_you_mean(Path(uri).name, by_name, 0.75)}{there_are}")
 
 
 class UnknownName(SimulationError):

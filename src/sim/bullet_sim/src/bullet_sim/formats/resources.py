@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from urllib.parse import unquote
 
-from bullet_sim.errors import ResourceNotFound
+from bullet_sim.errors import ResourceNotFound, nearest_file
 
 DATA_FOLDER = Path(__file__).resolve().parent.parent / "data"
 RESOURCE_SUBFOLDERS = ("", "models", "media/models", "Media/models")
@@ -92,7 +92,7 @@ class Resources:
             if not os.path.isabs(name) or not there:
                 there = {f"worlds/{path.name}" for folder in self.resource_paths
                          for path in (folder / "worlds").glob("*.world")}
-            raise ResourceNotFound(name, error.searched, sorted(there)) from None
+            raise ResourceNotFound(name, error.searched, sorted(there), error.hint) from None
 
     def package_folder(self, package: str) -> Path:
         """Folder of a ROS package. ResourceNotFound if the package finder does not find it."""
@@ -123,7 +123,16 @@ class Resources:
         for candidate in candidates:
             if os.path.exists(candidate):  # Path.exists raises for a name that is too long
                 return Path(os.path.abspath(candidate))
-        raise ResourceNotFound(uri, dict.fromkeys(str(path.parent) for path in candidates))
+        raise ResourceNotFound(uri, dict.fromkeys(str(path.parent) for path in candidates),
+                               hint=_nearest(candidates))
+
+
+def _nearest(candidates: list[Path]) -> str:
+    """The end of a line: the name most like the wrong part of the path that exists the farthest."""
+    wrong = [(next(part for part in (path, *path.parents) if os.path.isdir(part.parent)), path)
+             for path in candidates]
+    wrong.sort(key=lambda both: len(both[1].parts) - len(both[0].parts))
+    return next(filter(None, (nearest_file(part) for part, _ in wrong)), "")
 
 
 def _listed(environ: Mapping[str, str], variable: str) -> list[str]:
