@@ -128,6 +128,12 @@ def test_the_shipped_catalogue_has(english, chinese):
     assert read_catalogue("zh_CN").translate(english) == chinese
 
 
+@pytest.mark.parametrize("text", [
+    "GetModelState: model does not exist", "DeleteModel: model does not exist"])
+def test_upstreams_answers_stay_whole(text):
+    assert read_catalogue("zh_CN").translate(f"[ERROR] [1.2, 3.4]: {text}").endswith(text)
+
+
 def test_what_is_too_deep_stays():
     said = "mark: missing key 'b'; there are: c d"
     assert read_catalogue("zh_CN")._message(said, 0) is None

@@ -286,6 +286,7 @@ def main() -> int:
     try:
         run[options.command](options)
     except (GzError, SimulationError) as error:
-        print(f"gz {options.command}: {error}", file=sys.stderr)
+        command = f"gz {options.command}"
+        print(f"{command}: {error}", file=sys.stderr)
         return 1
     return 0

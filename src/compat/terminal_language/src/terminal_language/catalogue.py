@@ -110,6 +110,8 @@ class Catalogue:
 
     def _message(self, text: str, depth: int) -> str | None:
         """The translation of the text, or of its parts between colons and semicolons."""
+        if text in self._exact:
+            return self._exact[text]
         name, _, rest = text.partition(": ")
         program = PROGRAM.fullmatch(name)
         if program and rest in self._exact:
