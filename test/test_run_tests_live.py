@@ -89,7 +89,8 @@ def test_every_way_to_fail_is_told_and_nothing_runs_on(start, tmp_path):
         "test/test_plain.py: test_hangs",
         "without processes: left running: sleep 1000, of test/test_plain.py::test_left (call)"]
     assert "said so" in said and "      1  no GPU" in said
-    assert "\n  test/test_once.py: test_it[b c]\nUNSTEADY: test/test_once.py: mend it" in said
+    assert "\n  test/test_once.py: test_it[b c]\n    E " in said
+    assert "\nUNSTEADY: test/test_once.py: mend it" in said
     assert not any(map(asleep, (1000, 1001, 1002)))
     kept = json.loads((tmp_path / "cache/ros1-driving-courses/tests.json").read_text())
     assert kept["seconds"]["test/test_plain.py"] >= 1.0
