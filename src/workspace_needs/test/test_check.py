@@ -489,6 +489,7 @@ def workspace(tmp_path, capsys):
         "<buildtool_depend>catkin</buildtool_depend></package>")
     (folder / "main.cpp").write_text("int main() {}\n")
     (folder / "scripts/talk.py").write_text("#!/usr/bin/env python3\n")
+    (folder / "scripts/talk.py").chmod(0o755)
 
     def run(cmake: str = "", **files: str) -> tuple[int, str]:
         (folder / "CMakeLists.txt").write_text(
@@ -660,3 +661,13 @@ def test_a_package_with_nothing_to_check_is_not_said_to_work(tmp_path, capsys):
     assert main([str(tmp_path)]) == 0
     said = capsys.readouterr()
     assert said.out == "" and "there is nothing to check" in said.err
+
+
+@pytest.mark.parametrize("text, code, words", [
+    ("#!/usr/bin/env python3\ndef f(:\n", 1, "PROBLEM       line 2: Python 3 cannot read it: "),
+    ("import nobodys\n", 1, "NOT THERE     line 1: module nobodys is not here: neither Debian"),
+    ("import numpy\nnumpy.float(1)\n", 0, "approximated  line 2: numpy.float is an old name: "),
+    ("import rospy\n", 0, "works         first line, syntax and modules")])
+def test_a_script_alone(check, text, code, words):
+    got, said = check("talk.py", text)
+    assert got == code and "talk.py\n  " + words in said

@@ -6,10 +6,12 @@ import time
 
 import pytest
 from workspace_needs.check import parameter_commands
-from workspace_needs.check.sources import program_findings
+from workspace_needs.check.findings import PROBLEM
+from workspace_needs.check.sources import program_findings, script_findings
 from workspace_needs.workspace import _files
 
 from bullet_sim.errors import FormatError
+from bullet_sim_ros.interface import ABSENT, APPROXIMATED
 
 
 @pytest.fixture
@@ -44,7 +46,7 @@ def test_an_interpreter_that_is_not_there(node, first, named):
 
 
 @pytest.mark.parametrize("content", [
-    b"#!/usr/bin/env python3\n", b"#!/bin/sh -e\nx\r\n", b"\x7fELF\n", b"",
+    b"#!/usr/bin/env python3\n", b"#!/bin/sh -e\nx\r\n",
     b"#!/usr/bin/env python2.7\n", b"#!/usr/bin/env -S A=1 python3 -u\n"])
 def test_others_are_not_named(node, content):
     assert node(content) == []
@@ -56,15 +58,83 @@ def test_a_python_file_without_a_first_line(node):
                    "#!/usr/bin/env python3 there")
 
 
-def test_a_module_needs_no_first_line(node):
-    (node.path.parent / "__init__.py").touch()
-    assert node(b"import os\n") == []
+@pytest.mark.parametrize("folder, is_module", [("src/arm", True), ("scripts", False)])
+def test_a_module_below_src_needs_no_first_line(tmp_path, folder, is_module):
+    (tmp_path / "package.xml").touch()
+    path = tmp_path / folder / "part.py"
+    path.parent.mkdir(parents=True)
+    (path.parent / "__init__.py").touch(0o755)
+    path.write_text("import os\n")
+    path.chmod(0o755)
+    assert len(list(program_findings(tmp_path))) == len(list(script_findings(path))) == (
+        0 if is_module else 1)
+    path.chmod(0o644)
+    assert list(script_findings(path)) == []
 
 
 def test_what_catkin_starts_itself_needs_no_first_line(node):
-    (node.path.parents[1] / "CMakeLists.txt").write_text(
+    folder = node.path.parents[1]
+    (folder / "package.xml").touch()
+    (folder / "CMakeLists.txt").write_text(
         "catkin_install_python(PROGRAMS scripts/talker.py DESTINATION x)")
     assert node(b"#!/usr/bin/python2.7\n") == []
+    node.path.chmod(0o644)
+    assert list(program_findings(folder)) == list(script_findings(node.path)) == []
+    node.path.write_bytes(b"def f(:\n")
+    assert list(program_findings(folder)) == list(script_findings(node.path)) != []
+
+
+def test_a_script_that_is_not_executable_is_named_with_the_command(node, tmp_path):
+    (tmp_path / "package.xml").touch()
+    node(b"#!/usr/bin/env python3\n")
+    node.path.chmod(0o644)
+    found, = program_findings(tmp_path)
+    assert [found] == list(script_findings(node.path)) and found.status == PROBLEM
+    (node.path.parent / "other.py").write_text("from talker import talk\n")
+    assert list(program_findings(tmp_path)) == []
+    (node.path.parent / "other.py").unlink()
+    subprocess.run(found.how.partition("type: ")[2], shell=True, check=True)
+    assert list(program_findings(tmp_path)) == []
+
+
+@pytest.mark.parametrize("body, part, status, how", [
+    ("def f(:\n", "line 2", PROBLEM, "Python 3 cannot read it: invalid syntax"),
+    ("x = 1\nprint 'hello'\n", "line 3", PROBLEM, "this is Python 2, and only Python 3 is here: "),
+    ("return\n", "line 2", PROBLEM, "Python 3 cannot read it: 'return' outside function"),
+    ("import moveit_commander\n", "line 2", ABSENT, "module moveit_commander is not here: MoveIt"),
+    ("import os, rospyy.msg\n", "line 2", ABSENT, "is rospy meant?"),
+    ("def f():\n    from urllib2 import x\n", "line 3", ABSENT, "Python 3 calls it urllib.request"),
+    ("import numpy as np\nnp.float(1)\nnp.float(2)\n", "line 3", APPROXIMATED,
+     "numpy.float is an old name: write float"),
+    ("from collections import Iterable\n", "line 2", APPROXIMATED, "collections.abc.Iterable")])
+def test_what_python_will_not_do_is_named_with_its_line(node, body, part, status, how):
+    assert node(b"#!/usr/bin/env python3\n" + body.encode())
+    found, = program_findings(node.path.parents[1])
+    assert (found.part, found.status) == (part, status) and how in found.how
+    assert [found] == list(script_findings(node.path))
+
+
+@pytest.mark.parametrize("body", [
+    b"try:\n    import Queue\nexcept ImportError:\n    import queue\n", b"import rospy, beside\n",
+    b"from . import x\n", b"import sys\nsys.path.append('/x')\nimport other\n",
+    b"import numpy as np\nnp.float32(1)\n", "# 中文\nprint('好')\n".encode()])
+def test_what_python_will_do_is_not_named(node, body):
+    (node.path.parent / "beside.py").touch()
+    assert node(b"#!/usr/bin/env python3\n" + body) == []
+
+
+def test_modules_of_the_workspace_are_there(tmp_path):
+    path = tmp_path / "src/arm/scripts/talk.py"
+    for folder in (path.parent, tmp_path / "src/arm_msgs", tmp_path / "src/hand/src/grip"):
+        folder.mkdir(parents=True)
+    (tmp_path / "src/arm/package.xml").write_text("<package><name>arm_of_mine</name></package>")
+    path.write_text("import arm_msgs.msg, arm_of_mine.cfg, grip\nimport nobodys\n")
+    assert [found.part for found in script_findings(path)] == ["line 2"]
+
+
+def test_an_empty_script_is_named(node):
+    (_, how), = node(b"")
+    assert how == "it is empty, so that nothing starts"
 
 
 @pytest.mark.parametrize("line, named", [

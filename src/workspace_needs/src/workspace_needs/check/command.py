@@ -16,6 +16,7 @@ from workspace_needs.workspace import WorkspaceError
 EPILOG = """examples:
   rosrun bullet_sim_ros check robot.urdf.xacro model:=big    a robot
   rosrun bullet_sim_ros check my_world.world                 a world
+  rosrun bullet_sim_ros check talker.py                      a script
   rosrun bullet_sim_ros check learning_topic                 all robots, worlds, launch files of it
   rosrun bullet_sim_ros check learning_topic 0course.launch  what this launch file starts
   rosrun bullet_sim_ros check ~/catkin_ws                    what of a workspace builds and works
@@ -28,8 +29,8 @@ def main(argv: list[str] | None = None) -> int:
         prog="check",
         description="Says what of a robot, world, package or workspace will work here.",
         epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", help="file (.urdf .xacro .sdf .world .launch), model folder, "
-                                     "package or workspace")
+    parser.add_argument("what", help="file (.urdf .xacro .sdf .world .launch .py), model "
+                                     "folder, package or workspace")
     parser.add_argument("launch", nargs="?", help="launch file of the package")
     parser.add_argument("arguments", nargs="*", default=[], metavar="name:=value",
                         help="for xacro or launch")

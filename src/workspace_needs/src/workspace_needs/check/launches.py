@@ -22,6 +22,7 @@ from bullet_sim.formats.xml_text import decoded, read_bytes
 from bullet_sim_ros.control import controllers, registry  # noqa: F401  (controllers register)
 from bullet_sim_ros.interface import Row
 from bullet_sim_ros.package_paths import open_resources
+from workspace_needs.check.absent import why_absent
 from workspace_needs.check.findings import ABSENT, PROBLEM, UNCHECKED, WORKS, Finding, problem, told
 from workspace_needs.check.launch_files import (
     Launch,
@@ -32,7 +33,6 @@ from workspace_needs.check.launch_files import (
 from workspace_needs.check.parameter_commands import XACRO, NotRun
 from workspace_needs.check.sources import script_finding
 from workspace_needs.check.texts import TextChecker
-from workspace_needs.tables import DEBIAN, Tables
 
 SPAWNERS = ("spawn_model", "spawn_model.py", "spawn_urdf")
 SERVERS = ("gzserver", "gazebo", "debug")
@@ -42,19 +42,6 @@ NONE_UNBUILT: Unbuilt = MappingProxyType({})
 SEARCH_PATHS = ("GAZEBO_MODEL_PATH", "GAZEBO_RESOURCE_PATH")
 LARGEST_SCRIPT = 2**20  # bytes
 CALLS_XACRO = re.compile(rb"\bxacro(\.py)?[\s\"',)]|\bxacro\.process_file|import xacro\b")
-
-
-@cache
-def _tables() -> Tables:
-    return Tables()
-
-
-def _why_absent(package: str) -> str:
-    """Why there is no such package, or how it is had."""
-    answer = _tables().answer(package)
-    if answer.kind == DEBIAN:
-        return f"sudo apt-get install {' '.join(answer.packages)}"
-    return answer.why or "source devel/setup.bash of its workspace first"
 
 
 def _executables(package: str) -> set[str]:
@@ -176,7 +163,7 @@ class LaunchChecker:
                 return
         except rospkg.ResourceNotFound:
             yield Finding(where, name, ABSENT,
-                          f"package {node.package} is not here: {_why_absent(node.package)}")
+                          f"package {node.package} is not here: {why_absent(node.package)}")
             return
         yield from list(script_finding(Path(files[0]))) or [Finding(where, name, WORKS)]
         words = _words(node)

@@ -1,4 +1,4 @@
-"""A package's own programs: first lines of scripts, and image transports of C++ nodes."""
+"""A package's own programs: its scripts, and image transports of C++ nodes."""
 
 import os
 import re
@@ -10,6 +10,7 @@ from pathlib import Path
 import rospkg
 
 from workspace_needs.check.findings import ABSENT, Finding, problem
+from workspace_needs.check.python_files import python_findings
 from workspace_needs.workspace import SOURCES
 
 LONGEST = 256  # bytes that Linux reads of a first line
@@ -23,13 +24,7 @@ LARGEST = 1 << 20  # bytes of a source that is searched
 
 
 def program_findings(folder: Path) -> Iterator[Finding]:
-    """A finding for each program below `folder` that will not start, or end with an exception.
-
-    Scripts that CMakeLists.txt hands to catkin_install_python are started by catkin's relay.
-    """
-    cmake = folder / "CMakeLists.txt"
-    text = cmake.read_text("utf-8", "replace") if cmake.is_file() else ""
-    _, relayed, names = text.partition("catkin_install_python")
+    """A finding for each program below `folder` that will not start, or end with an exception."""
     for place, below, files in os.walk(folder):
         below[:] = sorted(name for name in below if not name.startswith("."))
         for path in (Path(place, name) for name in sorted(files)):
@@ -37,8 +32,9 @@ def program_findings(folder: Path) -> Iterator[Finding]:
                 continue
             if path.suffix in SOURCES:
                 yield from transport_findings(path)
-            elif os.access(path, os.X_OK) and not (relayed and path.name in names):
-                yield from script_finding(path)
+            elif (os.access(path, os.X_OK) or _is_relayed(path, folder)
+                  or (_first_line(path).startswith(b"#!") and _is_for_rosrun(path, folder))):
+                yield from script_findings(path, folder)
 
 
 def transport_findings(path: Path) -> Iterator[Finding]:
@@ -68,32 +64,85 @@ def _is_here(package: str) -> bool:
     return True
 
 
-def script_finding(path: Path) -> Iterator[Finding]:
-    """A finding if the first line of the file is a script's and wrong."""
+def script_findings(path: Path, folder: Path | None = None) -> Iterator[Finding]:
+    """Findings about a script: how it is started, and what Python says of it.
+
+    `folder`: its package's, which is looked for unless it is given.
+    """
+    folder = folder or _package_of(path)
+    yield from script_finding(path, folder)
+    line = _first_line(path)
+    if b"python" in line if line.startswith(b"#!") else path.suffix == ".py":
+        if _is_script(path, folder) and not path.stat().st_size:
+            yield problem(str(path), "file", "it is empty, so that nothing starts")
+        yield from python_findings(path, folder)
+
+
+def script_finding(path: Path, folder: Path | None = None) -> Iterator[Finding]:
+    """A finding if the script's first line is wrong, or rosrun does not find it.
+
+    Scripts that CMakeLists.txt hands to catkin_install_python are started by catkin's relay.
+    """
+    folder = folder or _package_of(path)
+    if _is_relayed(path, folder):
+        return
+    line = _first_line(path)
+    if line and (why := _fault(line.removesuffix(b"\n"), path, folder)):
+        yield problem(str(path), "line 1", why)
+    if line.startswith(b"#!") and not os.access(path, os.X_OK) and _is_for_rosrun(path, folder):
+        yield problem(str(path), "file", "it is not executable, so that rosrun and roslaunch do "
+                      f"not find it; type: chmod +x {shlex.quote(str(path))}")
+
+
+def _first_line(path: Path) -> bytes:
+    """What Linux reads of a first line; nothing if that has no end or the file cannot be read."""
     try:
         with path.open("rb") as file:
             line, newline, _ = file.read(LONGEST).partition(b"\n")
-    except OSError as error:
-        yield problem(str(path), "line 1", error)
-        return
-    if newline and (why := _fault(line, path)):
-        yield problem(str(path), "line 1", why)
+    except OSError:
+        return b""
+    return line + newline if newline else b""
 
 
-def _is_script(path: Path) -> bool:
+def _package_of(path: Path) -> Path:
+    """The folder of the package that a file is in, else its own."""
+    return next((each for each in path.parents if (each / "package.xml").is_file()), path.parent)
+
+
+def _is_relayed(path: Path, folder: Path) -> bool:
+    """Whether the package's CMakeLists.txt hands a script to catkin_install_python."""
+    cmake = folder / "CMakeLists.txt"
+    text = cmake.read_text("utf-8", "replace") if cmake.is_file() else ""
+    calls = text.partition("catkin_install_python")[2]
+    return re.search(rf"[\s/\"]{re.escape(path.name)}[\s)\"]", calls) is not None
+
+
+def _is_script(path: Path, folder: Path) -> bool:
     """Whether it is no module: where all files are executable, as on Windows' disks, both are."""
-    return (path.suffix == ".py" and path.name != "setup.py"
-            and not (path.parent / "__init__.py").exists())
+    module = ((path.parent / "__init__.py").exists()
+              and "src" in path.relative_to(folder).parts)
+    return path.suffix == ".py" and path.name not in ("setup.py", "__init__.py") and not module
 
 
-def _fault(line: bytes, path: Path) -> str:
+def _is_for_rosrun(path: Path, folder: Path) -> bool:
+    """Whether a script is meant to be started by its name, and no neighbour imports it."""
+    place = path.relative_to(folder).parts[:-1]
+    if not (place in ((), ("src",)) or place[0] in ("scripts", "nodes")) or (
+            path.suffix == ".py" and not _is_script(path, folder)):
+        return False
+    imports = re.compile(rf"^\s*(?:import|from)\s+{re.escape(path.stem)}\b".encode(), re.M)
+    return not any(imports.search(other.read_bytes()) for other in path.parent.glob("*.py")
+                   if other != path and other.is_file())
+
+
+def _fault(line: bytes, path: Path, folder: Path) -> str:
     if line.startswith(BYTE_ORDER_MARK + b"#!"):
         command = rf"sed -i '1s/^\xEF\xBB\xBF//' {shlex.quote(str(path))}"
         return ("a byte order mark stands before #!, so that no interpreter is found; type: "
                 f"{command}")
     if not line.startswith(b"#!"):
         return (f"it has no #!, so that rosrun starts it as a shell script; write {PYTHON} there"
-                if _is_script(path) and not line.startswith(b"\x7fELF") else "")
+                if os.access(path, os.X_OK) and _is_script(path, folder) else "")
     if line.endswith(b"\r"):
         command = rf"sed -i 's/\r$//' {shlex.quote(str(path))}"
         return f"it ends as lines do on Windows, so that no interpreter is found; type: {command}"
