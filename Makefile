@@ -7,6 +7,8 @@ verbs = setup course race viewer drive lane track avoid navigate autorace mark d
 # Where the cases of a trial run: WORKERS= of them at a time here, or on the workers of SCHEDULER=.
 WHERE = $(if $(WORKERS),--workers "$(WORKERS)") $(if $(SCHEDULER),--scheduler "$(SCHEDULER)")
 
+CPP =# make's own is a command, and never empty
+
 # Refuse unknown commands and options at once: `make autorace SEDS=3` would otherwise drive the default ten seeds.
 ifneq ($(MAKECMDGOALS),)
 ifeq ($(MAKELEVEL),0)

@@ -157,3 +157,10 @@ def test_a_bashrc_that_cannot_be_written_is_one_line(tmp_path: Path, what: str) 
         capture_output=True, check=False)
     line, = (done.stdout + done.stderr).splitlines()
     assert done.returncode and f"{home}/.bashrc cannot be written: type in each new" in line
+
+
+def test_every_command_runs_without_options() -> None:
+    verbs = re.findall(r"^  ([a-z-]+)", said(["make", "help"]), re.MULTILINE)
+    assert len(verbs) > 20
+    for verb in verbs:
+        said(["make", "-n", verb])

@@ -665,7 +665,8 @@ def test_a_package_with_nothing_to_check_is_not_said_to_work(tmp_path, capsys):
 
 @pytest.mark.parametrize("text, code, words", [
     ("#!/usr/bin/env python3\ndef f(:\n", 1, "PROBLEM       line 2: Python 3 cannot read it: "),
-    ("import nobodys\n", 1, "NOT THERE     line 1: module nobodys is not here: neither Debian"),
+    ("import nobodys\n", 1,
+     "NOT THERE     line 1: module nobodys is not here: Debian has no python3-nobodys"),
     ("import numpy\nnumpy.float(1)\n", 0, "approximated  line 2: numpy.float is an old name: "),
     ("import rospy\n", 0, "works         first line, syntax and modules")])
 def test_a_script_alone(check, text, code, words):

@@ -76,12 +76,17 @@ def test_what_catkin_starts_itself_needs_no_first_line(node):
     folder = node.path.parents[1]
     (folder / "package.xml").touch()
     (folder / "CMakeLists.txt").write_text(
+        "# catkin_install_python(...)\n"
         "catkin_install_python(PROGRAMS scripts/talker.py DESTINATION x)")
     assert node(b"#!/usr/bin/python2.7\n") == []
     node.path.chmod(0o644)
     assert list(program_findings(folder)) == list(script_findings(node.path)) == []
     node.path.write_bytes(b"def f(:\n")
     assert list(program_findings(folder)) == list(script_findings(node.path)) != []
+    (folder / "CMakeLists.txt").write_text(
+        "# catkin_install_python(PROGRAMS scripts/talker.py)\ninstall(PROGRAMS scripts/talker.py)")
+    node.path.write_bytes(b"#!/usr/bin/env python3\n")
+    assert ["chmod +x" in found.how for found in program_findings(folder)] == [True]
 
 
 def test_a_script_that_is_not_executable_is_named_with_the_command(node, tmp_path):
@@ -90,7 +95,7 @@ def test_a_script_that_is_not_executable_is_named_with_the_command(node, tmp_pat
     node.path.chmod(0o644)
     found, = program_findings(tmp_path)
     assert [found] == list(script_findings(node.path)) and found.status == PROBLEM
-    (node.path.parent / "other.py").write_text("from talker import talk\n")
+    (node.path.parent / "other.py").write_text("import os, talker\n")
     assert list(program_findings(tmp_path)) == []
     (node.path.parent / "other.py").unlink()
     subprocess.run(found.how.partition("type: ")[2], shell=True, check=True)
@@ -100,6 +105,9 @@ def test_a_script_that_is_not_executable_is_named_with_the_command(node, tmp_pat
 @pytest.mark.parametrize("body, part, status, how", [
     ("def f(:\n", "line 2", PROBLEM, "Python 3 cannot read it: invalid syntax"),
     ("x = 1\nprint 'hello'\n", "line 3", PROBLEM, "this is Python 2, and only Python 3 is here: "),
+    (b"x = 1  # \xd6\xd0\n", "line 2", PROBLEM, "it is not UTF-8; save it as UTF-8"),
+    ('if __name__ == "__main__":\n    import nobodys\n', "line 3", ABSENT,
+     "Debian has no python3-nobodys"),
     ("return\n", "line 2", PROBLEM, "Python 3 cannot read it: 'return' outside function"),
     ("import moveit_commander\n", "line 2", ABSENT, "module moveit_commander is not here: MoveIt"),
     ("import os, rospyy.msg\n", "line 2", ABSENT, "is rospy meant?"),
@@ -108,7 +116,8 @@ def test_a_script_that_is_not_executable_is_named_with_the_command(node, tmp_pat
      "numpy.float is an old name: write float"),
     ("from collections import Iterable\n", "line 2", APPROXIMATED, "collections.abc.Iterable")])
 def test_what_python_will_not_do_is_named_with_its_line(node, body, part, status, how):
-    assert node(b"#!/usr/bin/env python3\n" + body.encode())
+    body = body if isinstance(body, bytes) else body.encode()
+    assert node(b"#!/usr/bin/env python3\n" + body)
     found, = program_findings(node.path.parents[1])
     assert (found.part, found.status) == (part, status) and how in found.how
     assert [found] == list(script_findings(node.path))
@@ -117,6 +126,10 @@ def test_what_python_will_not_do_is_named_with_its_line(node, body, part, status
 @pytest.mark.parametrize("body", [
     b"try:\n    import Queue\nexcept ImportError:\n    import queue\n", b"import rospy, beside\n",
     b"from . import x\n", b"import sys\nsys.path.append('/x')\nimport other\n",
+    b"import contextlib\nwith contextlib.suppress(ImportError):\n    import other\n",
+    b"import time\nt = time.clock() if hasattr(time, 'clock') else 0\n",
+    b"import numpy as np\nif not hasattr(np, 'float'):\n    np.float = float\n",
+    "# -*- coding: gbk -*-\nx = '中'\n".encode("gbk"),
     b"import numpy as np\nnp.float32(1)\n", "# 中文\nprint('好')\n".encode()])
 def test_what_python_will_do_is_not_named(node, body):
     (node.path.parent / "beside.py").touch()

@@ -89,15 +89,16 @@ def test_a_master_uri_that_is_none_is_one_line(monkeypatch):
 
 @pytest.mark.parametrize("running, own, expected", [
     (["/a/gazebo", "/b/gazebo"], "/b/gazebo", "/b/gazebo"),
-    (["/a/gazebo", "/gazebo"], "/b/gazebo", "/gazebo"),
+    (["/a/gazebo", "/gazebo"], "/gazebo", "/gazebo"),
     (["/a/gazebo"], "/gazebo", "/a/gazebo")])
 def test_the_simulator_to_talk_to(running, own, expected):
     assert chosen(running, own, []) == expected
 
 
-def test_of_several_simulators_one_is_to_be_named():
+@pytest.mark.parametrize("other", ["/b/gazebo", "/gazebo"])
+def test_of_several_simulators_one_is_to_be_named(other):
     with pytest.raises(GzError) as said:
-        chosen(["/a/gazebo", "/b/gazebo"], "/c/gazebo", ["model", "-m", "my car", "-p"])
+        chosen(["/a/gazebo", other], "/c/gazebo", ["model", "-m", "my car", "-p"])
     assert str(said.value) == (
-        "several simulators run: /a/gazebo, /b/gazebo. Name the namespace of one, as in: "
+        f"several simulators run: /a/gazebo, {other}. Name the namespace of one, as in: "
         "ROS_NAMESPACE=a gz model -m 'my car' -p")

@@ -273,10 +273,18 @@ class CarDrive(LiveDrive):
         if self.drive.samples:
             last = self.drive.samples[-1].time
             limit = LAST_MESSAGE_TIME if self.drive.over else INTERRUPTED_TIME
-            self._frames = self._observer.count(last, limit)
-            if self.fingerprints:
-                self.sensor_sums = self.fingerprints.sums(last, limit)
+            try:
+                self._count(last, limit)
+            except KeyboardInterrupt:
+                self._count(last, 0.0)
+                raise
         self._observer.stop()
+
+    def _count(self, until: float, limit: float) -> None:
+        """Count what came up to this simulated time, s; what is in transit has `limit` s, wall."""
+        self._frames = self._observer.count(until, limit)
+        if self.fingerprints:
+            self.sensor_sums = self.fingerprints.sums(until, limit)
 
     @property
     def simulated(self) -> float:

@@ -236,24 +236,24 @@ def _become(*words: str) -> None:
 def _simulator() -> str:
     """The full name of the simulator to talk to; GzError if there is none."""
     try:
+        own = rospy.resolve_name("gazebo")
         running = simulators("get_world_properties")
     except (OSError, rosgraph.MasterException):
         raise GzError(NOT_RUNNING) from None
-    except ValueError as error:  # ROS_MASTER_URI is no URI
+    except ValueError as error:  # ROS_MASTER_URI is no URI, or ROS_NAMESPACE no name
         raise GzError(str(error)) from None
-    return chosen(running, rospy.resolve_name("gazebo"), sys.argv[1:])
+    return chosen(running, own, sys.argv[1:])
 
 
 def chosen(running: list[str], own: str, words: list[str]) -> str:
-    """Of the simulators that run that of our own namespace, or /gazebo, or the only one.
+    """Of the simulators that run that of our own namespace, or the only one.
 
     GzError with what to type, given gz's arguments, if there are none or several others.
     """
     if not running:
         raise GzError(NOT_RUNNING)
-    for name in (own, "/gazebo"):
-        if name in running:
-            return name
+    if own in running:
+        return own
     if len(running) > 1:
         namespace = running[0].removesuffix("/gazebo").strip("/")
         raise GzError(f"several simulators run: {', '.join(running)}. Name the namespace of one, "

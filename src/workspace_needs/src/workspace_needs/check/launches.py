@@ -31,7 +31,7 @@ from workspace_needs.check.launch_files import (
     read_launch,
 )
 from workspace_needs.check.parameter_commands import XACRO, NotRun
-from workspace_needs.check.sources import script_finding
+from workspace_needs.check.sources import script_findings
 from workspace_needs.check.texts import TextChecker
 
 SPAWNERS = ("spawn_model", "spawn_model.py", "spawn_urdf")
@@ -165,7 +165,7 @@ class LaunchChecker:
             yield Finding(where, name, ABSENT,
                           f"package {node.package} is not here: {why_absent(node.package)}")
             return
-        yield from list(script_finding(Path(files[0]))) or [Finding(where, name, WORKS)]
+        yield from list(script_findings(Path(files[0]))) or [Finding(where, name, WORKS)]
         words = _words(node)
         if _runs_xacro(files[0]):
             yield Finding(where, name, UNCHECKED, f"{files[0]} runs xacro; the robot that it makes "

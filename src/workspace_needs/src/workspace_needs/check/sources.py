@@ -13,6 +13,7 @@ from workspace_needs.check.findings import ABSENT, Finding, problem
 from workspace_needs.check.python_files import python_findings
 from workspace_needs.workspace import SOURCES
 
+IMPORTS = re.compile(r"^\s*(?:import|from)\s+(.+)$", re.MULTILINE)
 LONGEST = 256  # bytes that Linux reads of a first line
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 PYTHON = "#!/usr/bin/env python3"
@@ -74,7 +75,7 @@ def script_findings(path: Path, folder: Path | None = None) -> Iterator[Finding]
     line = _first_line(path)
     if b"python" in line if line.startswith(b"#!") else path.suffix == ".py":
         if _is_script(path, folder) and not path.stat().st_size:
-            yield problem(str(path), "file", "it is empty, so that nothing starts")
+            yield problem(str(path), "line 1", "it is empty, so that nothing starts")
         yield from python_findings(path, folder)
 
 
@@ -90,7 +91,7 @@ def script_finding(path: Path, folder: Path | None = None) -> Iterator[Finding]:
     if line and (why := _fault(line.removesuffix(b"\n"), path, folder)):
         yield problem(str(path), "line 1", why)
     if line.startswith(b"#!") and not os.access(path, os.X_OK) and _is_for_rosrun(path, folder):
-        yield problem(str(path), "file", "it is not executable, so that rosrun and roslaunch do "
+        yield problem(str(path), "line 1", "it is not executable, so that rosrun and roslaunch do "
                       f"not find it; type: chmod +x {shlex.quote(str(path))}")
 
 
@@ -113,8 +114,8 @@ def _is_relayed(path: Path, folder: Path) -> bool:
     """Whether the package's CMakeLists.txt hands a script to catkin_install_python."""
     cmake = folder / "CMakeLists.txt"
     text = cmake.read_text("utf-8", "replace") if cmake.is_file() else ""
-    calls = text.partition("catkin_install_python")[2]
-    return re.search(rf"[\s/\"]{re.escape(path.name)}[\s)\"]", calls) is not None
+    calls = re.findall(r"catkin_install_python\s*\(([^)]*)\)", re.sub("#.*", "", text))
+    return any(path.name in re.split(r'[\s/"]+', call) for call in calls)
 
 
 def _is_script(path: Path, folder: Path) -> bool:
@@ -125,14 +126,21 @@ def _is_script(path: Path, folder: Path) -> bool:
 
 
 def _is_for_rosrun(path: Path, folder: Path) -> bool:
-    """Whether a script is meant to be started by its name, and no neighbour imports it."""
+    """Whether a package's script is meant to be started by its name, and nobody imports it."""
+    if not (folder / "package.xml").is_file():
+        return False
     place = path.relative_to(folder).parts[:-1]
     if not (place in ((), ("src",)) or place[0] in ("scripts", "nodes")) or (
             path.suffix == ".py" and not _is_script(path, folder)):
         return False
-    imports = re.compile(rf"^\s*(?:import|from)\s+{re.escape(path.stem)}\b".encode(), re.M)
-    return not any(imports.search(other.read_bytes()) for other in path.parent.glob("*.py")
-                   if other != path and other.is_file())
+    return path.stem not in _imported_in(folder)
+
+
+def _imported_in(folder: Path) -> frozenset[str]:
+    """Each word of the import lines of a package's Python files."""
+    lines = (line for path in folder.rglob("*.py") if path.is_file()
+             for line in IMPORTS.findall(path.read_text("utf-8", "replace")))
+    return frozenset(word for line in lines for word in re.findall(r"\w+", line))
 
 
 def _fault(line: bytes, path: Path, folder: Path) -> str:
