@@ -1,8 +1,11 @@
 """gz without a simulator: files, and the line for what is not here."""
 
+import socket
 import subprocess
+from types import SimpleNamespace
 
 import pytest
+from gazebo_ros import running
 from gazebo_ros.gz import GzError, chosen
 
 ROBOT = """<robot name="cart">
@@ -93,6 +96,18 @@ def test_a_master_uri_that_is_none_is_one_line(monkeypatch):
     (["/a/gazebo"], "/gazebo", "/a/gazebo")])
 def test_the_simulator_to_talk_to(running, own, expected):
     assert chosen(running, own, []) == expected
+
+
+def test_a_killed_simulator_does_not_count(monkeypatch):
+    with socket.create_server(("localhost", 0)) as alive, socket.socket() as dead:
+        dead.bind(("localhost", 0))
+        ports = {f"/{name}/gazebo/x": each.getsockname()[1]
+                 for name, each in (("a", alive), ("b", dead))}
+        master = SimpleNamespace(
+            getSystemState=lambda: ([], [], [[name, ["n"]] for name in ports]),
+            lookupService=lambda name: f"rosrpc://localhost:{ports[name]}")
+        monkeypatch.setattr(running.rosgraph, "Master", lambda _: master)
+        assert running.simulators("x") == ["/a/gazebo"]
 
 
 @pytest.mark.parametrize("other", ["/b/gazebo", "/gazebo"])
