@@ -1,12 +1,13 @@
 """`make soak`: what counts as growth, and one short run."""
 
 import csv
+import itertools
 import math
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -75,7 +76,9 @@ def test_too_few_samples_are_no_verdict(count):
 
 def test_ever_more_processes_of_other_names_are_growth(monkeypatch):
     monkeypatch.setattr(samples.rospy, "Subscriber", lambda *_, **__: None)
-    monkeypatch.setattr(samples.rospy, "get_time", time.monotonic)
+    now = itertools.count(0.0, PERIOD)
+    monkeypatch.setattr(samples.rospy, "get_time", lambda: 0.0)
+    monkeypatch.setattr(samples, "time", SimpleNamespace(monotonic=lambda: next(now)))
     monkeypatch.setattr(samples, "processes", lambda: left)
     monkeypatch.setattr(samples, "_place", lambda _: (0.0, 0.0))
     sampler, left, found = samples.Sampler("robot"), [], []

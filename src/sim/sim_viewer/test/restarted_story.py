@@ -93,8 +93,15 @@ class Restarted(unittest.TestCase):
         page.evaluate("(select => { select.value = '/right/cmd_vel';"
                       "select.dispatchEvent(new Event('change')); })"
                       "(document.querySelector('#drive-topic'))")
+
+        def drives():
+            if page.evaluate("document.querySelector('#drive-state').dataset.state") == "stopped":
+                page.key("w", False)  # a page that hung lets go, and wants it pressed again
+                page.key("w", True)
+            return heard.count("/right/cmd_vel") > 2
+
         page.key("w", True)
-        wait_until(lambda: heard.count("/right/cmd_vel") > 2, "the robot that was chosen")
+        wait_until(drives, "the robot that was chosen")
         page.key("w", False)
         self.assertNotIn("/left/cmd_vel", heard)
         page.close()
