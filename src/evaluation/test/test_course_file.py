@@ -33,14 +33,16 @@ def test_followers_are_found_wherever_the_package_is(name):
     assert course.follower in {path.name for path in course.follower_files()}
 
 
-def test_a_folder_that_is_not_ours_is_one_line(capsys):
+@pytest.mark.parametrize("program, script", [
+    ("course_run", "scripts/course.sh"), ("mark_drive", "scripts/mark.sh")])
+def test_a_folder_that_is_not_ours_is_one_line(capsys, program, script):
     def write() -> int:
         raise PermissionError(13, "Permission denied", "/out")
 
-    assert run_program("course_run", write) == NOT_RUN
+    assert run_program(program, write) == NOT_RUN
     assert capsys.readouterr().err == (
-        "course_run: you may not write /out: cd to a folder of yours, or give one: "
-        "scripts/course.sh --out DIR\n")
+        f"{program}: you may not write /out: cd to a folder of yours, or give one: "
+        f"{script} --out DIR\n")
 
 
 @pytest.mark.parametrize("values, said", [

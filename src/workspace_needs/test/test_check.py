@@ -518,6 +518,9 @@ def test_what_is_in_a_workspace_is_looked_at_before_it_is_built(workspace):
 
 @pytest.mark.parametrize("cmake, code, words", [
     ("", 0, "works         build"),
+    ("add_executable(see EXCLUDE_FROM_ALL see.cpp)", 0, "works         build"),
+    ("add_library(see STATIC EXCLUDE_FROM_ALL see.cpp)\nadd_executable(n main.cpp)\n"
+     "target_link_libraries(n see)", 1, "PROBLEM       build: see.cpp will not compile"),
     ("add_executable(see see.cpp)", 1, "PROBLEM       build: see.cpp will not compile: the header "
                                        "<strange_msgs/Thing.h> is not here: neither")])
 def test_a_header_that_nobody_has_matters_where_a_target_includes_it(workspace, cmake, code, words):

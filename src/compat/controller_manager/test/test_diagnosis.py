@@ -1,8 +1,12 @@
 """The command line of spawner, and the lines that name the cause of a failure."""
 
+import socket
+from types import SimpleNamespace
+
 import pytest
 from controller_manager import client, configuration, diagnosis, spawning
 from controller_manager_msgs.msg import ControllerState, HardwareInterfaceResources
+from node_basics import running
 
 
 def listed(*rows):
@@ -76,6 +80,16 @@ def test_switches():
             (["b"], ["a"], diagnosis.SEE_LOG),
             (["c"], [], diagnosis.SEE_LOG)):
         assert diagnosis.switch_failure(controllers, start, stop) == cause
+
+
+def test_a_killed_manager_or_simulator_does_not_count(monkeypatch):
+    names = ("/car/controller_manager/list_controllers", "/gazebo/spawn_urdf_model")
+    with socket.socket() as dead:
+        dead.bind(("localhost", 0))
+        monkeypatch.setattr(running.rosgraph, "Master", lambda _: SimpleNamespace(
+            getSystemState=lambda: ([], [], [[name, ["n"]] for name in names]),
+            lookupService=lambda name: f"rosrpc://localhost:{dead.getsockname()[1]}"))
+        assert "is the simulator running" in client.ManagerClient("car").absence("load_controller")
 
 
 def test_no_manager():

@@ -78,7 +78,7 @@ def one_of(kind: str, variable: str, names: Iterable[str], name: str) -> str:
 
 def script_of(program: str) -> str:
     """The script that runs a program and takes all of its options, which make does not."""
-    return f"scripts/{program.removesuffix('_run')}.sh"
+    return f"scripts/{re.sub('_(run|drive)$', '', program)}.sh"
 
 
 PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130

@@ -17,6 +17,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import asdict, dataclass, fields
@@ -34,6 +35,7 @@ NO_MODULES = re.compile(r"required packages were not found:\s*((?:- \S+\s*)+)")
 NO_MODULE = re.compile(r"^-- +(?:No p|P)ackage '([^']+)'.*\n(?:--.*\n)*CMake Error at .*\n"
                        r" *A required package was not found", re.MULTILINE)
 QUERY = ".cmake/api/v1/query/codemodel-v2"  # CMake's file API answers into ../../reply
+RULE = re.compile(r"^(\S+): (\S+)$", re.MULTILINE)  # of a Makefile without commands
 DPKG = Path("/var/lib/dpkg/status")
 
 
@@ -157,13 +159,14 @@ class _Run:
         if not code:
             folder = self._packages[name].folder.resolve()
             targets = _targets(place / "build" / name, folder)
+            made = _made(targets, place / "build" / name)
             _pretend_built(targets, place / "devel" / name / "lib")
             relays = place / "devel" / name / "lib" / name  # of catkin_install_python
             programs = {path.name for path in relays.glob("*")} | {
-                target["nameOnDisk"] for target in targets if target["type"] == "EXECUTABLE"
+                target["nameOnDisk"] for target in made if target["type"] == "EXECUTABLE"
                 and target["name"] not in dict(left_out)}
             return Configured(left_out=left_out, programs=tuple(sorted(programs)),
-                              sources=_sources(targets),
+                              sources=_sources(made),
                               targets=tuple(target["name"] for target in targets))
         shutil.rmtree(place / "devel" / name, ignore_errors=True)  # so that no other finds it
         absent = place / f"{name}.absent"
@@ -186,7 +189,8 @@ class _Run:
                  for other in _with_dependencies(self._graph[name], self._graph)]
         prefixes = [*below, *os.environ.get("CMAKE_PREFIX_PATH", "").split(":")]
         command = ["cmake", str(self._packages[name].folder.resolve()), "-Wno-dev", *hook(),
-                   *self._words, f"-DCATKIN_DEVEL_PREFIX={place / 'devel' / name}",
+                   "-GUnix Makefiles", *self._words,
+                   f"-DCATKIN_DEVEL_PREFIX={place / 'devel' / name}",
                    f"-DCMAKE_PREFIX_PATH={';'.join(filter(None, prefixes))}", *more]
         with subprocess.Popen(command, cwd=build, stdin=subprocess.DEVNULL, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -220,6 +224,16 @@ def _targets(build: Path, folder: Path) -> list[dict]:
         if target["type"] != "UTILITY" and folder in (place, *place.parents):
             found.append(target)
     return found
+
+
+def _made(targets: Iterable[dict], build: Path) -> list[dict]:
+    """Those that `make` makes: not all with EXCLUDE_FROM_ALL, which the file API does not tell."""
+    rules: dict[str, set[str]] = defaultdict(set)
+    for name, needed in RULE.findall((build / "CMakeFiles/Makefile2").read_text("utf-8")):
+        rules[name].add(needed)
+    made = _with_dependencies(["all"], rules)
+    return [target for target in targets if str(
+        Path(target["paths"]["build"], "CMakeFiles", f"{target['name']}.dir", "all")) in made]
 
 
 def _sources(targets: Iterable[Mapping]) -> tuple[str, ...]:

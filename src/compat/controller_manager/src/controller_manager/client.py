@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Sequence
 
-import rosgraph
 import rospy
 from controller_manager_msgs.msg import ControllerState
 from controller_manager_msgs.srv import (
@@ -14,6 +13,7 @@ from controller_manager_msgs.srv import (
     SwitchControllerRequest,
     UnloadController,
 )
+from node_basics.running import offering, simulators
 
 KINDS = {
     "list_controllers": ListControllers,
@@ -96,18 +96,7 @@ class ManagerClient:
 
 def managers() -> list[str]:
     """The namespaces in which some manager offers its services."""
-    return [name or "/" for name in _offering("/controller_manager/list_controllers")]
-
-
-def simulators() -> list[str]:
-    """The nodes that are simulators, such as /gazebo."""
-    return _offering("/spawn_urdf_model")
-
-
-def _offering(ending: str) -> list[str]:
-    """What comes before this ending in the names of the master's services."""
-    _, _, services = rosgraph.Master(rospy.get_name()).getSystemState()
-    return sorted(name.removesuffix(ending) for name, _ in services if name.endswith(ending))
+    return [name or "/" for name in offering("/controller_manager/list_controllers")]
 
 
 def absence(service: str, namespaces: list[str], worlds: list[str]) -> str:

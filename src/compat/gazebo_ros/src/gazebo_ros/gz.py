@@ -19,16 +19,16 @@ from gazebo_msgs.srv import (
     SetModelState,
 )
 from geometry_msgs.msg import Point, Pose, Quaternion
+from node_basics.running import simulators
 from std_srvs.srv import Empty
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats.loading import load_model, load_world
+from bullet_sim.formats.loading import load_light, load_model, load_world
 from bullet_sim.formats.sdf.include import model_file
 from bullet_sim.formats.sdf.writing import VERSION, sdf_text
 from bullet_sim.formats.xml_text import decoded, parse_xml, read_xml_file
 from bullet_sim.pose import quaternion_from_rpy, rpy_from_quaternion
 from bullet_sim_ros.package_paths import open_resources
-from gazebo_ros.running import simulators
 
 ELSEWHERE = {
     "camera": "roslaunch sim_viewer viewer.launch, for the page in the browser",
@@ -118,8 +118,8 @@ def run_sdf(options: argparse.Namespace) -> None:
     logging.getLogger("bullet_sim").addHandler(mistakes)
     if root.tag != "robot" and root.find("world") is not None:
         load_world(name, resources)
-    else:
-        model = load_model(ElementTree.tostring(root, encoding="unicode"), resources)
+    elif load_light(text := ElementTree.tostring(root, encoding="unicode"), resources) is None:
+        model = load_model(text, resources)
     if options.print:
         print(sdf_text(model) if root.tag == "robot"
               else ElementTree.tostring(root, encoding="unicode"))
@@ -286,7 +286,6 @@ def main() -> int:
     try:
         run[options.command](options)
     except (GzError, SimulationError) as error:
-        command = f"gz {options.command}"
-        print(f"{command}: {error}", file=sys.stderr)
+        print(f"gz {options.command}: {error}", file=sys.stderr)
         return 1
     return 0

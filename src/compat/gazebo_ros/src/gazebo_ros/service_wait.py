@@ -5,8 +5,7 @@ import time
 
 import rosgraph
 import rospy
-
-from gazebo_ros.running import simulators
+from node_basics.running import simulators
 
 # s; rospy's 0.3 s would be a tenth of the time to a first image. A look costs 0.1 ms here and as
 # much in the master (measured).

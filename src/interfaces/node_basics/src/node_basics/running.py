@@ -1,4 +1,4 @@
-"""Which simulators run on this master, by the services that they offer."""
+"""What runs on this master, by the services that it offers."""
 
 import socket
 from urllib.parse import urlsplit
@@ -9,15 +9,19 @@ import rospy
 ANSWER_TIME = 1.0  # s, wall, to connect
 
 
-def simulators(service: str) -> list[str]:
-    """The nodes, such as /one/gazebo, that offer the service of this name.
+def simulators(service: str = "spawn_urdf_model") -> list[str]:
+    """The nodes, such as /one/gazebo, that offer the simulator's service of this name."""
+    return [f"{place}/gazebo" for place in offering(f"/gazebo/{service}")]
 
-    The master still lists one that was killed; nobody listens at its port.
+
+def offering(ending: str) -> list[str]:
+    """What comes before this ending in the names of services.
+
+    The master still lists those of a node that was killed; nobody listens at its port.
     """
-    ending = f"/gazebo/{service}"
     master = rosgraph.Master(rospy.get_name())
     _, _, offered = master.getSystemState()
-    return sorted(name.removesuffix(f"/{service}") for name, _ in offered
+    return sorted(name.removesuffix(ending) for name, _ in offered
                   if name.endswith(ending) and _listens(master, name))
 
 
