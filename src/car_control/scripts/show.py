@@ -11,7 +11,6 @@ from sensor_msgs.msg import Image
 WINDOW = "SHOW"
 QUIT_KEYS = (ord("q"), 27)  # 27: Esc
 KEY_WAIT_MS = 5
-NO_IMAGE_TIME = 5.0  # s, wall
 
 
 class Camera:
@@ -41,20 +40,9 @@ def is_closed():
     return cv2.getWindowProperty(WINDOW, cv2.WND_PROP_VISIBLE) < 1
 
 
-def warn_without_images(camera):
-    if camera.msg is None:
-        rospy.logwarn(
-            "no images on %s: is the car's simulation running?  还没有收到图像",
-            camera.image_sub.resolved_name,
-        )
-
-
 def main():
     rospy.init_node("camera", anonymous=True)
     camera = Camera()
-    warning = threading.Timer(NO_IMAGE_TIME, warn_without_images, [camera])
-    warning.daemon = True
-    warning.start()
     cv2.namedWindow(WINDOW, cv2.WINDOW_NORMAL)
     while not rospy.is_shutdown():
         image = camera.next_image()

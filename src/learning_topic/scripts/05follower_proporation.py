@@ -80,12 +80,6 @@ def main():
     rospy.init_node("follower", anonymous=True)
     follower = Follower()
     rospy.on_shutdown(follower.stop)  # Ctrl-C
-    try:
-        rospy.wait_for_message("camera/rgb/image_raw", Image, timeout=5)
-    except rospy.ROSException:
-        if not rospy.is_shutdown():
-            rospy.logwarn("no images on camera/rgb/image_raw yet: no course, or a burger?  "
-                          "还没有收到图像：赛道启动了吗？burger 没有相机")
     rospy.spin()
 
 

@@ -1,9 +1,8 @@
 """Python runs this file at its start: it amends a few modules when a script imports them.
 
 cv2 gets its windows, cv_bridge a faster swap of colours, Tk a line for want of a screen, some
-modules get the names that they had when a script was written, and rospy's subscribers say so when
-their simulator has ended. A roslaunch that a program of ours refuses ends with one line; each
-begins without setuptools.
+modules get the names that they had when a script was written, and rospy says what a node waits for.
+A roslaunch that a program of ours refuses ends with one line; each begins without setuptools.
 Programs of ours print in the language of the locale, and end at Ctrl-C without a traceback.
 """
 
@@ -14,8 +13,8 @@ import time
 from importlib.machinery import PathFinder
 
 BRIDGE = "cv_bridge.boost.cv_bridge_boost"
-AMENDED = {BRIDGE, "cv2", "joint_state_publisher", "numpy", "roslaunch.loader", "rospy.topics",
-           "tkinter", "yaml"}
+AMENDED = {BRIDGE, "cv2", "joint_state_publisher", "numpy", "roslaunch.loader", "rospy.client",
+           "rospy.impl.tcpros_service", "rospy.topics", "tkinter", "yaml"}
 LAUNCHERS = {"roslaunch", "roscore", "rostest"}
 
 
@@ -42,7 +41,7 @@ class Watch:
     @staticmethod
     def load(load, module):
         load(module)
-        for amend in (put_old_names_back, give_windows, hasten_cv_bridge, tell_of_the_end,
+        for amend in (put_old_names_back, give_windows, hasten_cv_bridge, tell_of_waiting,
                       end_refused_launch):
             try:
                 amend(module)
@@ -82,11 +81,11 @@ def hasten_cv_bridge(module):
         amend_cv_bridge(module)
 
 
-def tell_of_the_end(module):
-    if module.__name__ == "rospy.topics":
-        from headless_highgui.course_end import amend_topics
+def tell_of_waiting(module):
+    if module.__name__.startswith("rospy."):
+        from headless_highgui import waiting
 
-        amend_topics(module)
+        waiting.AMENDED[module.__name__](module)
 
 
 def end_refused_launch(module):

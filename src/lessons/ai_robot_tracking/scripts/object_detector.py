@@ -75,7 +75,7 @@ class ObjectDetector:
                     due = now + 1 / self.settings.max_rate
             elif now - max(heard, due) > QUIET_TIME:
                 rospy.logwarn_throttle(COMPLAINT_TIME, f"no image on {self.topic} for "
-                                       f"{now - heard:.0f} s; see: rostopic hz {self.topic}")
+                                       f"{now - heard:.0f} s")
             if now - told > SKIP_TIME:
                 self.tell_skipped(now - told)
                 told = now

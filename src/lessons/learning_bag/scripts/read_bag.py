@@ -6,14 +6,14 @@ import sys
 import rosbag
 import rospy
 
-FILE = "test.bag"
+FILE = "test.bag"  # unless another is named  也可在命令行指定
 TOPIC = "chatter"
 
 
 def main():
     rospy.init_node("read_bag")
     try:
-        with rosbag.Bag(FILE) as bag:
+        with rosbag.Bag(*(rospy.myargv(sys.argv)[1:2] or [FILE])) as bag:
             # The time at which the message was written.  时间是写入的时刻
             for topic, message, time in bag.read_messages(topics=[TOPIC]):
                 rospy.loginfo("%.3f %s: %s", time.to_sec(), topic, message.data)

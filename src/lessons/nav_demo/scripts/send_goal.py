@@ -10,6 +10,7 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
+SOON = 2  # s, in which a move_base that runs answers  正在运行的 move_base 会在此时间内应答
 WAIT = 30  # s to wait for move_base  等 move_base 应答的秒数
 
 
@@ -46,6 +47,17 @@ def wait_for_clock():
             rospy.loginfo_once("waiting for /clock: is the simulator running?")
 
 
+def wait_for_move_base(client):
+    """Exits with one line if nobody answers.  没有应答时，输出一行后退出。"""
+    if client.wait_for_server(rospy.Duration(SOON)):
+        return
+    if not rospy.is_shutdown():
+        rospy.loginfo(f"waiting for move_base, for {WAIT} s: roslaunch nav_demo nav05_test.launch")
+    if not client.wait_for_server(rospy.Duration(WAIT)):
+        sys.exit("stopped before the goal was sent" if rospy.is_shutdown() else
+                 "nobody answers as move_base: roslaunch nav_demo nav05_test.launch")
+
+
 def tell_progress(feedback):
     """Called repeatedly while driving.  途中反复调用。"""
     place = feedback.base_position.pose.position
@@ -60,17 +72,12 @@ def stop_if_driving(client):
 
 def main():
     x, y, degrees = place_of(rospy.myargv(sys.argv)[1:])  # without ROS's  去掉 ROS 自己的参数
-    try:
-        rospy.init_node("send_goal")
-    except rospy.ROSInitException:
-        sys.exit("stopped while waiting for a master: start the simulator first")
+    rospy.init_node("send_goal")
     wait_for_clock()
     if rospy.is_shutdown():  # Ctrl-C: the master may have ended  此时可能已没有 master
-        sys.exit("stopped")
+        sys.exit("stopped before the goal was sent")
     client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-    if not client.wait_for_server(rospy.Duration(WAIT)):
-        sys.exit("stopped" if rospy.is_shutdown() else
-                 "nobody answers as move_base: roslaunch nav_demo nav05_test.launch")
+    wait_for_move_base(client)
     client.send_goal(goal_at(x, y, math.radians(degrees)), feedback_cb=tell_progress)
     rospy.on_shutdown(lambda: stop_if_driving(client))
     client.wait_for_result()

@@ -36,5 +36,16 @@ def test_ctrl_c_before_there_is_a_clock_asks_nobody_any_more(script, monkeypatch
     monkeypatch.setattr(script.rospy, "is_shutdown", lambda: True)
     monkeypatch.setattr(script.rospy, "get_time", lambda: 0)
     monkeypatch.setattr(script.actionlib, "SimpleActionClient", None)
-    with pytest.raises(SystemExit, match=r"^stopped$"):
+    with pytest.raises(SystemExit, match=r"^stopped before the goal was sent$"):
         script.main()
+
+
+def test_a_move_base_that_does_not_run_is_said_soon(script, monkeypatch):
+    said, waited = [], []
+    client = type("Client", (), {"wait_for_server": lambda _, time: waited.append(time.to_sec())})
+    monkeypatch.setattr(script.rospy, "is_shutdown", lambda: False)
+    monkeypatch.setattr(script.rospy, "loginfo", lambda line: said.append((line, *waited)))
+    with pytest.raises(SystemExit, match="nobody answers as move_base: roslaunch nav_demo"):
+        script.wait_for_move_base(client())
+    assert said == [("waiting for move_base, for 30 s: roslaunch nav_demo nav05_test.launch", 2.0)]
+    assert waited == [2.0, 30.0]

@@ -74,7 +74,7 @@ def test_while_it_imports(start, script, number):
 @pytest.mark.parametrize("script", ["amcl/scripts/amcl", "map_server/scripts/map_server"])
 def test_while_it_waits_for_the_master(start, script):
     process = start(sys.executable, NODES / script, "map")
-    wait_until(lambda: "Unable to register with master node" in process.said())
+    wait_until(lambda: "No ROS master at" in process.said())
     assert ends(process, signal.SIGINT) == 128 + signal.SIGINT
 
 

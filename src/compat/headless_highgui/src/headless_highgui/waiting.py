@@ -1,0 +1,210 @@
+"""Says in a node, once, what it waits for and what to type then, where rospy itself is silent.
+
+For a ROS master, the first image, scan or odometry, a service, a simulator that has ended.
+"""
+
+import contextlib
+import difflib
+import signal
+import socket
+import sys
+import threading
+import time
+from urllib.parse import urlsplit
+
+from terminal_language import translated
+
+SEEN = ("nav_msgs/Odometry", "sensor_msgs/CompressedImage", "sensor_msgs/Image",
+        "sensor_msgs/LaserScan")  # by nodes that drive
+WATCHES_ITSELF = "nav_nodes"  # a program that has loaded this module says which topic is silent
+SIMULATOR = "gazebo"  # node name, in any namespace
+GRACE = 5.0  # s, wall: a node that ends together with its simulator says nothing
+OF_A_LAUNCH = "__log:="  # an argument of its nodes, which start before what they wait for
+LAUNCH_GRACE = 20.0  # s, wall
+ANSWER_TIME = 1.0  # s, wall
+LOOK_AGAIN = 0.2  # s, wall
+NO_MASTER = ("No ROS master at %s. Type roscore (or start the course) in another terminal; this "
+             "program then goes on by itself.")
+NO_SIMULATOR = ("Nothing on %s yet: nobody publishes it, and no simulator runs. Start the course "
+                "in another terminal; this program then goes on by itself.")
+OTHER_TOPIC = ("Nothing on %s yet: nobody publishes it. If %s is meant, end this program and start "
+               "it with %s:=%s.")
+NO_SENSOR = "Nothing on %s yet: no robot of the simulator that runs has such a sensor."
+STILL = "Nothing on %s yet, though it is published: is the simulation paused?"
+NO_SERVICE = ("Nobody offers the service %s yet: start the program that does in another terminal; "
+              "this one then goes on by itself.")
+OTHER_SERVICE = "Nobody offers the service %s yet; is %s meant?"
+AGAIN = ("The simulator has ended: no more messages on %s. When the course is started again, this "
+         "program goes on by itself.")
+ALL_AGAIN = ("The simulator and the ROS master have ended: no more messages on %s. Press Ctrl-C; "
+             "start the course, then this program again.")
+SAID = set()  # forms of lines
+
+
+def amend_client(client):
+    """Let `init_node` say that it waits for a master; `client` is the module rospy.client.
+
+    rospy says in English that it cannot register, and after a Ctrl-C waits 5 s for a traceback.
+    """
+    init = client.init_node
+
+    def init_node(*words, **options):
+        try:
+            wait_for_master()
+        except KeyboardInterrupt:
+            if options.get("disable_signals"):
+                raise  # for the program, as rospy would
+            sys.exit(128 + signal.SIGINT)
+        init(*words, **options)
+
+    init_node.__doc__ = init.__doc__
+    client.init_node = init_node
+
+
+def wait_for_master():
+    """Print a line if no master listens, and wait for it."""
+    import rosgraph
+    import rospy
+
+    uri = rosgraph.get_master_uri()
+    try:
+        if listens(uri):
+            return
+    except ValueError:  # rospy says what is wrong with it
+        return
+    print(translated(NO_MASTER % uri), file=sys.stderr, flush=True)
+    while not listens(uri) and not rospy.is_shutdown():
+        time.sleep(LOOK_AGAIN)
+
+
+def amend_services(services):
+    """Let `wait_for_service` say what it waits for; `services` is rospy.impl.tcpros_service."""
+    wait = services.wait_for_service
+
+    def wait_for_service(service, timeout=None):
+        timer = after_grace(tell_of_service, service)
+        try:
+            wait(service, timeout)
+        finally:
+            timer.cancel()
+
+    wait_for_service.__doc__ = wait.__doc__
+    services.wait_for_service = wait_for_service
+
+
+def amend_topics(topics):
+    """Watch the connections of this process's subscribers; `topics` is the module rospy.topics."""
+    kind, told, awaited = topics._SubscriberImpl, set(), set()
+    begin, remove = kind.__init__, kind.remove_connection
+
+    def __init__(subscriber, *words, **options):
+        begin(subscriber, *words, **options)
+        if subscriber.type in SEEN and subscriber.resolved_name not in awaited:
+            awaited.add(subscriber.resolved_name)  # wait_for_message in a loop subscribes often
+            after_grace(tell_of_silence, subscriber)
+
+    def remove_connection(subscriber, connection):
+        remove(subscriber, connection)
+        publisher = connection.callerid_pub.rpartition("/")[2]
+        if (subscriber.closed or subscriber.type not in SEEN or publisher != SIMULATOR
+                or connection.endpoint_id in told or WATCHES_ITSELF in sys.modules):
+            return
+        told.add(connection.endpoint_id)
+        later(GRACE, tell, subscriber.resolved_name, connection.endpoint_id)
+
+    kind.__init__, kind.remove_connection = __init__, remove_connection
+
+
+def after_grace(act, *words):
+    """Act later, when what this process waits for should have come."""
+    launched = any(word.startswith(OF_A_LAUNCH) for word in sys.argv)
+    return later(LAUNCH_GRACE if launched else GRACE, act, *words)
+
+
+def later(seconds, act, *words):
+    """A timer that ends with the process; a master that is gone is no matter of its line."""
+    def run():
+        import rosgraph
+
+        with contextlib.suppress(OSError, rosgraph.MasterException):
+            act(*words)
+
+    timer = threading.Timer(seconds, run)
+    timer.daemon = True
+    timer.start()
+    return timer
+
+
+def tell_of_silence(subscriber):
+    """Log why no message has come, if none has."""
+    name = subscriber.resolved_name
+    if (subscriber.closed or WATCHES_ITSELF in sys.modules
+            or any(each.stat_num_msg for each in subscriber.connections)):
+        return
+    publishers = dict(asked("getSystemState")[0])
+    by_simulators = {topic for topic, nodes in publishers.items()
+                     if SIMULATOR in (node.rpartition("/")[2] for node in nodes)}
+    alike = by_simulators & {topic for topic, kind in asked("getPublishedTopics", "")
+                             if kind == subscriber.type}
+    if name in publishers:
+        tell_once(STILL, name)
+    elif alike:
+        meant = difflib.get_close_matches(name, alike, 1, 0.0)[0]
+        tell_once(OTHER_TOPIC, name, meant, name, meant)
+    elif by_simulators:
+        tell_once(NO_SENSOR, name)
+    else:
+        tell_once(NO_SIMULATOR, name)
+
+
+def tell_of_service(service):
+    """Log that nobody offers a service, and which one may be meant."""
+    import rospy
+
+    name = rospy.resolve_name(service)
+    offered = [each for each, _ in asked("getSystemState")[2]]
+    if name not in offered:
+        close = difflib.get_close_matches(name, offered, 1, 0.8)
+        tell_once(OTHER_SERVICE if close else NO_SERVICE, name, *close)
+
+
+def asked(call, *words):
+    """The master's answer to a call of its API."""
+    import rosgraph
+    import rospy
+
+    return getattr(rosgraph.Master(rospy.get_name()), call)(*words)
+
+
+def tell_once(form, *words):
+    """Log a line, unless this node has said it, perhaps of another name, or ends."""
+    import rospy
+
+    if form not in SAID and not rospy.is_shutdown():
+        SAID.add(form)
+        rospy.logwarn("%s", translated(form % words))
+
+
+def tell(topic, simulator):
+    """Log the line, unless this node ends, too, or the simulator at this URI runs on."""
+    import rosgraph
+    import rospy
+
+    if rospy.is_shutdown() or listens(simulator):
+        return
+    form = AGAIN if listens(rosgraph.get_master_uri()) else ALL_AGAIN
+    rospy.logwarn("%s", translated(form % topic))
+
+
+def listens(uri):
+    """Whether something listens at a URI."""
+    place = urlsplit(uri)
+    try:
+        socket.create_connection((place.hostname, place.port), ANSWER_TIME).close()
+    except OSError:
+        return False
+    return True
+
+
+AMENDED = {"rospy.client": amend_client, "rospy.impl.tcpros_service": amend_services,
+           "rospy.topics": amend_topics}

@@ -1,0 +1,223 @@
+"""A node says once what it waits for; connections and the master's answers are this test's own."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+import rosgraph
+import rospy
+from headless_highgui import waiting
+
+LIMIT = 60.0  # s
+IMAGE, TOPIC = "sensor_msgs/Image", "/camera/rgb/image_raw"
+
+
+def address(server):
+    return f"http://127.0.0.1:{server.getsockname()[1]}/"
+
+
+@pytest.fixture
+def gone():
+    """A URI where nobody listens any more."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        uri = address(server)
+    return uri
+
+
+@pytest.fixture
+def said(monkeypatch):
+    """What the node logs."""
+    lines = []
+    monkeypatch.setattr(rospy, "logwarn", lambda form, *values: lines.append(form % values))
+    monkeypatch.setattr(waiting, "SAID", set())
+    monkeypatch.setattr(rospy, "is_shutdown", lambda: False)
+    return lines
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """Closes a connection of a subscriber; what was looked into then: topics and publishers."""
+    found = []
+    monkeypatch.delitem(sys.modules, waiting.WATCHES_ITSELF, raising=False)  # of other tests
+    monkeypatch.setattr(waiting, "GRACE", 0.0)
+    monkeypatch.setattr(waiting, "tell", lambda *what: found.append(what))
+
+    class Subscriber:
+        def __init__(self, kind, closed):
+            self.type, self.closed, self.resolved_name = kind, closed, TOPIC
+            self.connections = [SimpleNamespace(stat_num_msg=1)]
+
+        def remove_connection(self, connection):
+            connection.removed = True
+
+    waiting.amend_topics(SimpleNamespace(_SubscriberImpl=Subscriber))
+
+    def close(kind=IMAGE, publisher="/gazebo", uri="http://a:1/", closed=False):
+        connection = SimpleNamespace(callerid_pub=publisher, endpoint_id=uri, removed=False)
+        Subscriber(kind, closed).remove_connection(connection)
+        assert connection.removed
+        for thread in threading.enumerate():
+            if isinstance(thread, threading.Timer):
+                thread.join(LIMIT)
+        return found
+
+    return close
+
+
+def test_a_program_that_watches_its_topics_itself_says_no_more(asked, monkeypatch):
+    monkeypatch.setitem(sys.modules, waiting.WATCHES_ITSELF, SimpleNamespace())
+    assert asked() == []
+
+
+def test_once_for_each_simulator(asked):
+    asked()
+    asked(kind="sensor_msgs/LaserScan")
+    assert asked(publisher="/two/gazebo", uri="http://a:2/") == [
+        (TOPIC, "http://a:1/"), (TOPIC, "http://a:2/")]
+
+
+@pytest.mark.parametrize("other", [
+    {"closed": True}, {"publisher": "/camera_driver"}, {"kind": "rosgraph_msgs/Clock"}])
+def test_other_ends_are_not_the_simulators(asked, other):
+    assert asked(**other) == []
+
+
+def test_a_simulator_that_runs_on_has_not_ended(said):
+    with socket.create_server(("127.0.0.1", 0)) as running:  # a model was deleted
+        waiting.tell(TOPIC, address(running))
+    assert said == []
+
+
+def test_a_node_that_ends_too_says_nothing(said, gone, monkeypatch):
+    monkeypatch.setattr(rospy, "is_shutdown", lambda: True)
+    waiting.tell(TOPIC, gone)
+    assert said == []
+
+
+def test_what_to_do_depends_on_the_master(said, gone, monkeypatch):
+    with socket.create_server(("127.0.0.1", 0)) as master:
+        uri = address(master)
+        monkeypatch.setattr(rosgraph, "get_master_uri", lambda: uri)
+        waiting.tell(TOPIC, gone)
+    waiting.tell(TOPIC, gone)
+    assert said == [
+        f"The simulator has ended: no more messages on {TOPIC}. When the course is started again, "
+        "this program goes on by itself.",
+        f"The simulator and the ROS master have ended: no more messages on {TOPIC}. Press Ctrl-C; "
+        "start the course, then this program again."]
+
+
+SIMULATED = {"/camera/rgb/image_raw": ("sensor_msgs/Image", ["/gazebo"]),
+             "/camera/depth/image_raw": ("sensor_msgs/Image", ["/two/gazebo"]),
+             "/scan": ("sensor_msgs/LaserScan", ["/gazebo"]),
+             "/follower/picture": ("sensor_msgs/Image", ["/follower"])}
+
+
+@pytest.fixture
+def master(monkeypatch):
+    """What the master knows: topics and services, which a test may change."""
+    state = SimpleNamespace(topics=dict(SIMULATED), services=["/spawn", "/clear"])
+    answers = {"getPublishedTopics": lambda: [[name, kind] for name, (kind, _) in
+                                              state.topics.items()],
+               "getSystemState": lambda: [[[name, nodes] for name, (_, nodes) in
+                                           state.topics.items()], [],
+                                          [[name, ["/turtlesim"]] for name in state.services]]}
+    monkeypatch.setattr(waiting, "asked", lambda call, *_: answers[call]())
+    return state
+
+
+def silent(name, kind=IMAGE, messages=(), closed=False):
+    connections = [SimpleNamespace(stat_num_msg=count) for count in messages]
+    waiting.tell_of_silence(SimpleNamespace(resolved_name=name, type=kind, closed=closed,
+                                            connections=connections))
+
+
+def test_why_no_image_comes(said, master, monkeypatch):
+    monkeypatch.delitem(sys.modules, waiting.WATCHES_ITSELF, raising=False)
+    silent("/camera/image_raw")
+    silent("/base_scan", "sensor_msgs/CompressedImage")
+    silent(TOPIC, messages=(0, 0))
+    master.topics = {"/follower/picture": SIMULATED["/follower/picture"]}
+    silent("/camera/image_raw")
+    silent(TOPIC)  # once for all topics
+    assert said == [
+        "Nothing on /camera/image_raw yet: nobody publishes it. If /camera/rgb/image_raw is meant, "
+        "end this program and start it with /camera/image_raw:=/camera/rgb/image_raw.",
+        "Nothing on /base_scan yet: no robot of the simulator that runs has such a sensor.",
+        f"Nothing on {TOPIC} yet, though it is published: is the simulation paused?",
+        "Nothing on /camera/image_raw yet: nobody publishes it, and no simulator runs. Start the "
+        "course in another terminal; this program then goes on by itself."]
+
+
+@pytest.mark.parametrize("other", [{"messages": (0, 1)}, {"closed": True}])
+def test_a_topic_that_was_heard_or_is_closed_is_not_missed(said, master, other, monkeypatch):
+    monkeypatch.delitem(sys.modules, waiting.WATCHES_ITSELF, raising=False)
+    silent("/camera/image_raw", **other)
+    assert said == []
+
+
+def test_a_service_that_nobody_offers(said, master):
+    for name in ("/spawn", "/spwan", "/gazebo/pause_physics"):
+        waiting.tell_of_service(name)
+    assert said == ["Nobody offers the service /spwan yet; is /spawn meant?",
+                    "Nobody offers the service /gazebo/pause_physics yet: start the program that "
+                    "does in another terminal; this one then goes on by itself."]
+
+
+def test_nodes_of_a_launch_wait_longer(monkeypatch):
+    begun = []
+    monkeypatch.setattr(waiting, "later", lambda seconds, *_: begun.append(seconds))
+    for words in (["follower.py"], ["follower.py", "__name:=a", "__log:=/a.log"]):
+        monkeypatch.setattr(sys, "argv", words)
+        waiting.after_grace(None)
+    assert begun == [waiting.GRACE, waiting.LAUNCH_GRACE]
+
+
+def test_subscribing_in_a_loop_starts_one_timer(monkeypatch):
+    class Subscriber:
+        def __init__(self, name, kind):
+            self.resolved_name, self.type = name, kind
+
+        def remove_connection(self, connection):
+            """As rospy's."""
+
+    begun = []
+    monkeypatch.setattr(waiting, "later", lambda _, act, which: begun.append(which.resolved_name))
+    waiting.amend_topics(SimpleNamespace(_SubscriberImpl=Subscriber))
+    for name in ("/scan", "/scan", "/scan_2"):
+        Subscriber(name, "sensor_msgs/LaserScan")
+    Subscriber("/chatter", "std_msgs/String")
+    assert begun == ["/scan", "/scan_2"]
+
+
+def node(words, **environment):
+    source = str(Path(waiting.__file__).parents[1])
+    return subprocess.Popen(
+        [sys.executable, "-c", words], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        env=os.environ | {"PYTHONPATH": f"{source}:{os.environ['PYTHONPATH']}"} | environment)
+
+
+@pytest.mark.parametrize(("language", "line"), [
+    ("en", "No ROS master at {0}. Type roscore (or start the course) in another terminal; this "
+           "program then goes on by itself.\n"),
+    ("zh_CN", "{0} 上没有 ROS master。请在另一个终端里输入 roscore（或启动跑道），"
+              "这个程序会自己继续。\n")])
+def test_without_a_master_a_line_and_ctrl_c_ends_it_at_once(gone, language, line):
+    waits = node("import rospy; rospy.init_node('lesson')", ROS_MASTER_URI=gone,
+                 LC_ALL="C.UTF-8", LANGUAGE=language)
+    assert waits.stderr.readline() == line.format(gone)
+    waits.send_signal(signal.SIGINT)
+    assert waits.communicate(timeout=3.0) == ("", "")  # rospy alone takes 5 s
+    assert waits.returncode == 128 + signal.SIGINT
+
+
+def test_every_python_node_has_it():
+    done = node("import rospy; print(rospy.topics._SubscriberImpl.remove_connection.__module__, "
+                "rospy.init_node.__module__, rospy.wait_for_service.__module__)")
+    assert done.communicate(timeout=LIMIT) == (" ".join([waiting.__name__] * 3) + "\n", "")
