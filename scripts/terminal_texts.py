@@ -53,6 +53,30 @@ OF_SYSTEM = (
 # Of expat, before a line and column.
 OF_EXPAT = ("not well-formed (invalid token)", "mismatched tag", "no element found",
             "unclosed token", "duplicate attribute", "junk after document element")
+# Of Python's reader of scripts, in the words of 3.11 to 3.13.
+OF_PYTHON = (
+    "invalid syntax", "invalid syntax. Perhaps you forgot a comma?",
+    "invalid syntax. Maybe you meant '==' or ':=' instead of '='?",
+    "cannot assign to {0} here. Maybe you meant '==' instead of '='?", "cannot assign to {0}",
+    "unexpected indent", "expected '{0}'", "expected '('", "expected 'except' or 'finally' block",
+    "{0} was never closed", "unmatched {0}", "'{0}' statement",
+    "closing parenthesis {0} does not match opening parenthesis {1}",
+    "closing parenthesis {0} does not match opening parenthesis {1} on line {2}",
+    "unterminated string literal (detected at line {0})",
+    "unterminated triple-quoted string literal (detected at line {0})",
+    "expected an indented block after {0} on line {1}", "expected an indented block",
+    "unindent does not match any outer indentation level",
+    "inconsistent use of tabs and spaces in indentation",
+    "Missing parentheses in call to '{0}'. Did you mean {1}?",
+    "multiple exception types must be parenthesized",
+    "leading zeros in decimal integer literals are not permitted; use an 0o prefix for octal "
+    "integers",
+    "invalid character '{0}' ({1})", "invalid non-printable character {0}",
+    "invalid decimal literal", "'{0}' outside function", "'{0}' outside loop",
+    "unexpected character after line continuation character", "keyword argument repeated: {0}",
+    "positional argument follows keyword argument", "source code string cannot contain null bytes")
+# Of PyYAML.
+OF_YAML = ("expected '{0}' or '{1}', but got '{2}'", "expected '{0}', but found '{1}'")
 # Of shell scripts that `python3 -m terminal_language` translates, as the terminal is a learner's.
 OF_SHELL = (
     "rosed: {0} is not installed; {1} opens {2}", "rosed: {0} has no screen here; {1} opens {2}",
@@ -68,6 +92,7 @@ OF_TABLES = (
     "  follower", "laps", "lap s", "RMS cm", "max cm", "sent", "dropped", "real time", "outcome",
     "goal", "reached", "straight s", "shortest s", "off cm", "off °", " points", "student",
     "halls", "contact", "mean time, s", "slowest, s", "nearest, m",
+    "file", "robot", "world",  # and of check
     "mission", "passed", "after s", "contacts", "why not", "yes", "mapping", "goals", "standing")
 # Of progress lines, whose frame has few words.
 OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off",
@@ -90,7 +115,8 @@ OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its pla
             "... COMPONENTS ...): found all the same")
 # Values of sentences, which may be names elsewhere.
 OF_VALUES = ("none", "unknown", "a number", "this user", "parent link", "child link", "link",
-             "joint", "model", "sensor")
+             "joint", "model", "sensor", "function call", "function definition", "class definition",
+             "literal", "expression", "attribute")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
             "world {0} ({1} models)", "model {0} ({1} links, {2} joints)", "the text",
             "{0}. Arg xml is {1}",  # roslaunch's
@@ -197,6 +223,8 @@ def python_texts() -> dict[str, list[str]]:
     found: dict[str, list[str]] = {text: ["Python's argparse"] for text in OF_ARGPARSE}
     found |= {text: ["the system"] for text in OF_SYSTEM}
     found |= {text: ["expat"] for text in OF_EXPAT}
+    found |= {text: ["Python"] for text in OF_PYTHON}
+    found |= {text: ["PyYAML"] for text in OF_YAML}
     found |= {text: [CHECK] for text in OF_CHECK}
     found |= {f"column{CONTEXT}{word}": ["tables"] for word in OF_TABLES}
     found |= {f"value{CONTEXT}{word}": ["values"] for word in OF_VALUES}

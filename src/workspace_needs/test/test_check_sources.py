@@ -1,17 +1,22 @@
 """What check says of a package's scripts and C++ nodes that will not run."""
 
 import os
+import re
 import subprocess
 import time
+from pathlib import Path
 
 import pytest
 from workspace_needs.check import parameter_commands
-from workspace_needs.check.findings import PROBLEM
+from workspace_needs.check.findings import PROBLEM, table
 from workspace_needs.check.sources import program_findings, script_findings
 from workspace_needs.workspace import _files
 
 from bullet_sim.errors import FormatError
 from bullet_sim_ros.interface import ABSENT, APPROXIMATED
+
+# A file is checked in a fork of this process, which must not hold engines or OpenGL of other tests.
+pytestmark = pytest.mark.processes
 
 
 @pytest.fixture
@@ -138,11 +143,73 @@ def test_what_python_will_do_is_not_named(node, body):
 
 def test_modules_of_the_workspace_are_there(tmp_path):
     path = tmp_path / "src/arm/scripts/talk.py"
-    for folder in (path.parent, tmp_path / "src/arm_msgs", tmp_path / "src/hand/src/grip"):
-        folder.mkdir(parents=True)
+    for name in ("arm/scripts/x", "arm_msgs/package.xml", "hand/src/grip/part.py",
+                 "hand/lib/fast.so", "hand/launch/nobodys.launch"):
+        (tmp_path / "src" / name).parent.mkdir(parents=True)
+        (tmp_path / "src" / name).touch()
     (tmp_path / "src/arm/package.xml").write_text("<package><name>arm_of_mine</name></package>")
-    path.write_text("import arm_msgs.msg, arm_of_mine.cfg, grip\nimport nobodys\n")
-    assert [found.part for found in script_findings(path)] == ["line 2"]
+    path.write_text("import arm_msgs.msg, arm_of_mine.cfg, grip, fast\n"
+                    "import nobodys\nimport launch\n")
+    assert [found.part for found in script_findings(path)] == ["line 2", "line 3"]
+
+
+@pytest.mark.parametrize("body, is_program", [
+    ('if __name__ == "__main__":\n    pass\n', True), ("def main():\n    pass\nmain()\n", True),
+    ("try:\n    rospy.init_node('n')\nexcept Exception:\n    pass\n", True),
+    ("class Node:\n    def __init__(self):\n        rospy.init_node('n')\n", False)])
+@pytest.mark.parametrize("folder", ["scripts", "src", "bin"])
+def test_a_program_that_rosrun_cannot_start_is_named_and_a_module_is_not(
+        tmp_path, folder, body, is_program):
+    (tmp_path / "package.xml").touch()
+    path = tmp_path / folder / "talker.py"
+    path.parent.mkdir()
+    path.write_text(body)
+    found = list(script_findings(path))
+    assert found == list(program_findings(tmp_path))
+    assert [("#!" in each.how, "chmod +x" in each.how) for each in found] == (
+        [(True, False), (False, True)] if is_program else [])
+    (path.parent / "other.py").write_text("from talker import main\n")
+    assert list(program_findings(tmp_path)) == []
+
+
+def test_modules_of_a_package_are_read_and_what_is_absent_is_named_once(tmp_path):
+    for name, text in (("src/arm/a.py", "import nobodys\n"), ("src/arm/b.py", "import nobodys\n"),
+                       ("src/arm/c.py", "print 1\n"), ("setup.py", "import nobodys2\n"),
+                       ("own/pyvenv.cfg", ""), ("own/lib/d.py", "print 1\n")):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    assert [(Path(each.where).name, each.status) for each in program_findings(tmp_path)] == [
+        ("a.py", ABSENT), ("c.py", PROBLEM)]
+
+
+@pytest.mark.parametrize("line, why", [
+    ("import rospy.nothere", "module rospy.nothere is not here: rospy has no module nothere"),
+    ("import rospy.coer", "rospy has no module coer (did you mean core?)"),
+    ("from geometry_msgs.msg import Pose, Twistt",
+     "geometry_msgs.msg has no message or service Twistt (did you mean Twist?)"),
+    ("from std_srvs.srv import Emptyy",
+     "std_srvs.srv has no message or service Emptyy (did you mean Empty?)"),
+    ("import bullet_sim.nothere", "bullet_sim has no module nothere"),
+    ("import cv2S", "is cv2 meant?"), ("import numppy", "is numpy meant?"),
+    ("import Rospy", "is rospy meant?")])
+def test_a_part_of_a_module_that_is_not_there_and_the_near_name(node, line, why):
+    node.path.write_text(line + "\n")
+    assert [why in found.how for found in script_findings(node.path)] == [True]
+
+
+@pytest.mark.parametrize("line", [
+    "import os.path, rospy.core, xml.etree.ElementTree, bullet_sim.formats.loading",
+    "from std_srvs.srv import Empty, EmptyRequest, EmptyResponse", "from rospy.msg import AnyMsg",
+    "from geometry_msgs.msg import *",
+    "from gazebo_msgs.msg import ModelState, _ModelState"])
+def test_parts_of_modules_that_are_there(node, line):
+    node.path.write_text(line + "\n")
+    assert list(script_findings(node.path)) == []
+
+
+def test_a_script_that_is_too_large_is_said_to_be_unread(node):
+    assert node(b"#!/usr/bin/env python3\n" + b"#" * 2**20) == [
+        (str(node.path), "it is not read: it has more than 1 MiB")]
 
 
 def test_an_empty_script_is_named(node):
@@ -190,3 +257,43 @@ def test_xacro_files_are_bounded_in_sum(tmp_path, monkeypatch):
     monkeypatch.setattr(parameter_commands, "MOST_IN_SUM", sum(parameter_commands._taken))
     with pytest.raises(FormatError, match=r"r.xacro: it is not expanded: those before it took"):
         parameter_commands.expanded(path, {}, str)
+
+
+@pytest.mark.parametrize("text, code, words", [
+    ("#!/usr/bin/env python3\ndef f(:\n", 1, "PROBLEM       line 2: Python 3 cannot read it: "),
+    ("import nobodys\n", 1,
+     "NOT THERE     line 1: module nobodys is not here: Debian has no python3-nobodys"),
+    ("import numpy\nnumpy.float(1)\n", 0, "approximated  line 2: numpy.float is an old name: "),
+    ("import rospy\n", 0, "works         first line, syntax and modules"),
+    ("import nobodys\ndef f(:\n", 1,
+     "PROBLEM       line 2: Python 3 cannot read it: invalid syntax; check it again once this is "
+     "mended: what follows is not read")])
+def test_a_script_alone(check, text, code, words):
+    got, said = check("talk.py", text)
+    assert got == code and "talk.py\n  " + words in said
+
+
+@pytest.mark.parametrize("text, words", [
+    ("#!/usr/bin/env python3\nimport nobodys\n", "NOT THERE     line 2: module nobodys"),
+    ("import nobodys\n", "NOT THERE     line 1: module nobodys"),
+    ("#!/bin/sh\n", "works         first line\n"),
+    ("#!/bin/shh\n", "PROBLEM       line 1: there is no /bin/shh here")])
+def test_a_script_without_a_suffix_is_no_robot(check, text, words):
+    assert words in check("talk", text)[1]
+
+
+def test_findings_stand_in_the_order_of_their_lines(check):
+    _, said = check("talk.py", "import numpy\nnumpy.float(1)\nimport nobodys\nnumpy.int(1)\n")
+    assert re.findall(r"line (\d)", said) == ["2", "3", "4"]
+
+
+@pytest.mark.parametrize("body, said", [
+    ("x = (1\n", "'(' 没有闭合"), ("def f\n", "缺少“(”"), ("f() = 1\n", "这里不能给函数调用赋值"),
+    ("if x\n    y\n", "缺少“:”"), ("  x\n", "意外的缩进"),
+    ("print 1\n", "“print”调用缺少括号")])
+def test_pythons_errors_are_translated(node, monkeypatch, body, said):
+    monkeypatch.setenv("LC_ALL", "C.UTF-8")
+    monkeypatch.setenv("LANGUAGE", "zh_CN")
+    node.path.write_text(body)
+    lines = table(script_findings(node.path))
+    assert said in lines and not re.search("[a-z]{3} [a-z]{3}", lines.partition("\n")[2])

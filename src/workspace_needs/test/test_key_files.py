@@ -8,7 +8,7 @@ import pytest
 import yaml
 from workspace_needs.debian_lists import read_packages, ros_packages
 from workspace_needs.places import release
-from workspace_needs.tables import TableError, Tables, read_absences
+from workspace_needs.tables import TableError, Tables, read_absences, read_modules
 
 from workspace_needs import key_files
 
@@ -140,3 +140,15 @@ def test_the_name_of_another_package_is_not_said_to_be_mistyped(key):
 def test_well_known_keys(key, package):
     assert package in Tables(of_release="bookworm").answer(key).packages
     assert package in Tables(of_release="trixie").answer(key).packages
+
+
+@pytest.mark.parametrize("text, said", [
+    ("renamed: {a: b}\npackages: {}\nmore: {}\n", "m.yaml: unknown key 'more'; there are renamed, "
+                                                 "packages"),
+    ("renamed: {a: b}\n", "m.yaml: packages is missing"),
+    ("renamed: {a: 1}\npackages: {}\n", "m.yaml, renamed: 'a' and 1 must be names")])
+def test_what_is_wrong_with_a_file_of_modules_is_named(tmp_path, text, said):
+    (tmp_path / "m.yaml").write_text(text)
+    with pytest.raises(TableError) as raised:
+        read_modules(tmp_path / "m.yaml")
+    assert str(raised.value) == said

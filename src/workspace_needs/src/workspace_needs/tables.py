@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from workspace_needs.places import package_folder, release
 
 OURS, DEBIAN, ABSENT, UNKNOWN = "ours", "debian", "absent", "unknown"
 KEYS = ("what", "why", "keys", "headers", "in_ours")  # of a row of absent.yaml
+MODULE_KEYS = ("renamed", "packages")  # of python_modules.yaml
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 # Forms of Debian names (lib..., hyphens) that ROS packages never have, so that none is confused.
 RELEASES = {"bookworm": "Debian 12", "trixie": "Debian 13"}
@@ -56,6 +58,8 @@ class Tables:
         self.debian: dict[str, Any] = self._read("rosdep/debian.yaml")
         self.cmake_names: dict[str, str] = self._read("data/cmake_names.yaml")
         self.absences = read_absences(self._folder / "data/absent.yaml")
+        self.renamed_modules, self.module_packages = read_modules(
+            self._folder / "data/python_modules.yaml")
 
     def _read(self, name: str) -> dict:
         return yaml.load((self._folder / name).read_text("utf-8"), LOADER) or {}
@@ -122,6 +126,21 @@ class Tables:
                 "the name")
 
 
+@cache
+def tables() -> Tables:
+    """The tables for this release, read once."""
+    return Tables()
+
+
+def why_absent(name: str, *debian_names: str) -> str:
+    """Why there is no `name`, or how it is had, perhaps by one of Debian's other names for it."""
+    for key in (name, *debian_names):
+        answer = tables().answer(key)
+        if answer.kind == DEBIAN:
+            return f"sudo apt-get install {' '.join(answer.packages)}"
+    return tables().answer(name).why or "source devel/setup.bash of its workspace first"
+
+
 def _is_slip(typed: str, name: str) -> bool:
     """Whether `typed` is `name` mistyped, and not another package's name (turtlebot_msgs)."""
     words, others = typed.split("_"), name.split("_")
@@ -145,3 +164,19 @@ def read_absences(path: Path) -> list[Absence]:
         rows.append(Absence(row["what"], row["why"], tuple(row["keys"]),
                             tuple(row.get("headers", ())), tuple(row.get("in_ours", ()))))
     return rows
+
+
+def read_modules(path: Path) -> list[dict[str, str]]:
+    """Names by module name, a dictionary for each of MODULE_KEYS; TableError names a wrong key."""
+    content = yaml.load(path.read_text("utf-8"), LOADER)
+    for key in content:
+        if key not in MODULE_KEYS:
+            raise TableError(f"{path.name}: unknown key {key!r}; there are "
+                             f"{', '.join(MODULE_KEYS)}")
+    for key in MODULE_KEYS:
+        if not isinstance(content.get(key), dict):
+            raise TableError(f"{path.name}: {key} is missing")
+        for module, name in content[key].items():
+            if not (isinstance(module, str) and isinstance(name, str)):
+                raise TableError(f"{path.name}, {key}: {module!r} and {name!r} must be names")
+    return [content[key] for key in MODULE_KEYS]

@@ -26,6 +26,7 @@ SPACED = re.compile(r"(?<=[\u4e00-\u9fff])(?: \0|\0 )(?=[\u4e00-\u9fff])")
 UNSPACED = re.compile(r"(?<=[\u4e00-\u9fff])\0+(?=[A-Za-z0-9])"
                       r"|(?<=[A-Za-z0-9])\0+(?=[\u4e00-\u9fff])")
 NAMES = re.compile(r"[\w./-]+(, [\w./-]+){2,}")  # a list of them stays as it is
+QUOTED = re.compile(r"'[()]'")  # a bracket that is spoken of
 FEWEST_WORDS = 3  # of what stays English; what has fewer is a frame for other texts
 VALUE = "value\4"  # gettext's msgctxt
 LONGEST = 3000  # characters of a line
@@ -64,7 +65,8 @@ class Sentence:
             values.append(text[at:found])
             at = found + len(part)
         values.append(text[at:end])
-        if any(value.count("(") != value.count(")") for value in values):
+        bare = [QUOTED.sub("", value) for value in values]
+        if any(value.count("(") != value.count(")") for value in bare):
             return None
         if not first and not self._leads and JOINTS.search(values[0]):
             return None

@@ -1,6 +1,7 @@
 """The command-line interface of check."""
 
 import argparse
+import re
 import sys
 from pathlib import Path
 
@@ -11,8 +12,10 @@ from bullet_sim_ros.unsourced import unsourced
 from workspace_needs.check.contents import Check
 from workspace_needs.check.findings import ACCEPTED, UNCHECKED, Finding, is_serious, table
 from workspace_needs.check.workspaces import workspace_findings
+from workspace_needs.tables import UNKNOWN, tables, why_absent
 from workspace_needs.workspace import WorkspaceError
 
+PACKAGE = re.compile(r"[A-Za-z][\w-]*")
 EPILOG = """examples:
   rosrun bullet_sim_ros check robot.urdf.xacro model:=big    a robot
   rosrun bullet_sim_ros check my_world.world                 a world
@@ -48,10 +51,7 @@ def main(argv: list[str] | None = None) -> int:
         print(f"check: {error}", file=sys.stderr)
         return 2
     if not findings:
-        near = (unsourced(args.what)
-                or did_you_mean(args.what, rospkg.RosPack().list(), 0.75))
-        what = (f"no such file or package{near}; try `rospack list`, or give a path"
-                if findings is None else
+        what = (_what_is_not_there(args.what) if findings is None else
                 "there is nothing to check: no robot, world or launch file, and no workspace "
                 "with packages of your own")
         print(f"check: {args.what}: {what}", file=sys.stderr)
@@ -66,6 +66,17 @@ def main(argv: list[str] | None = None) -> int:
                  else "all of it")
     print("\nsomething will be missing, see above" if serious else f"\n{all_of_it} will work")
     return 1 if serious else 0
+
+
+def _what_is_not_there(name: str) -> str:
+    near = unsourced(name) or did_you_mean(name, rospkg.RosPack().list(), 0.75)
+    if near or not PACKAGE.fullmatch(name):
+        return f"no such file or package{near}; try `rospack list`, or give a path"
+    why = why_absent(name)
+    if tables().answer(name).kind != UNKNOWN:
+        return f"no such file or package: {why}"
+    return (f"no such file or package: {why}; once it is cloned, type: rosrun bullet_sim_ros check "
+            f"~/catkin_ws/src/{name}")
 
 
 def _findings(args: argparse.Namespace) -> list[Finding] | None:

@@ -14,7 +14,7 @@ from bullet_sim_ros.interface import read_interface, rows_by_name
 from bullet_sim_ros.package_paths import open_resources
 from workspace_needs.check.findings import WORKS, Finding, problem
 from workspace_needs.check.launches import NONE_UNBUILT, LaunchChecker, Unbuilt
-from workspace_needs.check.sources import program_findings, script_findings
+from workspace_needs.check.sources import is_python, is_script, program_findings, script_findings
 from workspace_needs.check.texts import TextChecker
 
 LONGEST = 60.0  # s of processor time for a file; large worlds take 10
@@ -66,9 +66,9 @@ class Check:
             return self._texts.world_file(path)
         if path.suffix == ".yaml":
             return self._launches.yaml_file(path)
-        if path.suffix == ".py":
-            return [*script_findings(path)] or [Finding(
-                str(path), "first line, syntax and modules", WORKS)]
+        if is_script(path):
+            what = "first line, syntax and modules" if is_python(path) else "first line"
+            return [*script_findings(path)] or [Finding(str(path), what, WORKS)]
         values = dict(word.split(":=", 1) for word in self._arguments if ":=" in word)
         if path.suffix == ".sdf" and "<world" in path.read_text("utf-8", "replace"):
             return self._texts.world_file(path)

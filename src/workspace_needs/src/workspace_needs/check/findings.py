@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from terminal_language import translated
+from terminal_language import heading, translated
 from terminal_language.cells import width
 from terminal_language.wanted import wanted_language
 
@@ -30,19 +30,27 @@ class Finding:
 
 
 def table(findings: Iterable[Finding]) -> str:
-    """Lines, worst first within each file; the same finding twice counts once."""
+    """Lines, within each file worst first, then those of its lines; each finding counts once."""
     lines, last = [], None
     unique = dict.fromkeys(findings)
     places = list(dict.fromkeys(finding.where for finding in unique))
-    for finding in sorted(unique, key=lambda f: (places.index(f.where), ORDER.index(f.status))):
+    for finding in sorted(unique, key=lambda found: (
+            places.index(found.where), _line(found.part), ORDER.index(found.status))):
         if finding.where != last:
             lines.append("\n" + shortened(finding.where))
             last = finding.where
         # Each for itself: "build: it" would be taken for what is left out.
-        said = ": ".join(map(translated, filter(None, (finding.part, finding.how))))
+        part = heading(finding.part) if finding.part.isalpha() else translated(finding.part)
+        said = ": ".join(filter(None, (part, translated(finding.how))))
         word = translated(WORDS[finding.status])
         lines.append(shortened(f"  {word}{' ' * (13 - width(word))} {said}"))
     return "\n".join(lines).lstrip("\n")
+
+
+def _line(part: str) -> int:
+    """The number in `line N`; 0 for other parts."""
+    word, _, number = part.partition(" ")
+    return int(number) if word == "line" and number.isdecimal() else 0
 
 
 def problem(where: str, part: str, error: object) -> Finding:

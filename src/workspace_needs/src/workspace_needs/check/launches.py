@@ -22,7 +22,6 @@ from bullet_sim.formats.xml_text import decoded, read_bytes
 from bullet_sim_ros.control import controllers, registry  # noqa: F401  (controllers register)
 from bullet_sim_ros.interface import Row
 from bullet_sim_ros.package_paths import open_resources
-from workspace_needs.check.absent import why_absent
 from workspace_needs.check.findings import ABSENT, PROBLEM, UNCHECKED, WORKS, Finding, problem, told
 from workspace_needs.check.launch_files import (
     Launch,
@@ -33,6 +32,7 @@ from workspace_needs.check.launch_files import (
 from workspace_needs.check.parameter_commands import XACRO, NotRun
 from workspace_needs.check.sources import script_findings
 from workspace_needs.check.texts import TextChecker
+from workspace_needs.tables import why_absent
 
 SPAWNERS = ("spawn_model", "spawn_model.py", "spawn_urdf")
 SERVERS = ("gzserver", "gazebo", "debug")
