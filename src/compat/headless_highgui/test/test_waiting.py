@@ -44,7 +44,8 @@ def said(monkeypatch):
 def asked(monkeypatch):
     """Closes a connection of a subscriber; what was looked into then: topics and publishers."""
     found = []
-    monkeypatch.delitem(sys.modules, waiting.WATCHES_ITSELF, raising=False)  # of other tests
+    monkeypatch.setattr(waiting, "WATCH_THEMSELVES", {"nav_nodes"})
+    monkeypatch.delitem(sys.modules, "nav_nodes", raising=False)  # of other tests
     monkeypatch.setattr(waiting, "GRACE", 0.0)
     monkeypatch.setattr(waiting, "tell", lambda *what: found.append(what))
 
@@ -71,7 +72,7 @@ def asked(monkeypatch):
 
 
 def test_a_program_that_watches_its_topics_itself_says_no_more(asked, monkeypatch):
-    monkeypatch.setitem(sys.modules, waiting.WATCHES_ITSELF, SimpleNamespace())
+    monkeypatch.setitem(sys.modules, "nav_nodes", SimpleNamespace())
     assert asked() == []
 
 
@@ -139,7 +140,7 @@ def silent(name, kind=IMAGE, messages=(), closed=False):
 
 
 def test_why_no_image_comes(said, master, monkeypatch):
-    monkeypatch.delitem(sys.modules, waiting.WATCHES_ITSELF, raising=False)
+    monkeypatch.setattr(waiting, "WATCH_THEMSELVES", set())
     silent("/camera/image_raw")
     silent("/base_scan", "sensor_msgs/CompressedImage")
     silent(TOPIC, messages=(0, 0))
@@ -157,7 +158,7 @@ def test_why_no_image_comes(said, master, monkeypatch):
 
 @pytest.mark.parametrize("other", [{"messages": (0, 1)}, {"closed": True}])
 def test_a_topic_that_was_heard_or_is_closed_is_not_missed(said, master, other, monkeypatch):
-    monkeypatch.delitem(sys.modules, waiting.WATCHES_ITSELF, raising=False)
+    monkeypatch.setattr(waiting, "WATCH_THEMSELVES", set())
     silent("/camera/image_raw", **other)
     assert said == []
 
@@ -168,6 +169,19 @@ def test_a_service_that_nobody_offers(said, master):
     assert said == ["Nobody offers the service /spwan yet; is /spawn meant?",
                     "Nobody offers the service /gazebo/pause_physics yet: start the program that "
                     "does in another terminal; this one then goes on by itself."]
+
+
+def test_a_service_is_waited_for_as_rospy_does(monkeypatch):
+    waits, told = [], []
+    services = SimpleNamespace(wait_for_service=lambda *words: waits.append(words))
+    waiting.amend_services(services)
+    monkeypatch.setattr(waiting, "later", lambda _, act, name: told.append((act, name)) or
+                        SimpleNamespace(cancel=lambda: told.append("cancelled")))
+    services.wait_for_service("/spawn", 0.5)
+    assert (waits, told) == ([("/spawn", 0.5)], [])
+    services.wait_for_service("/spawn")
+    assert waits[1:] == [("/spawn",)]
+    assert told == [(waiting.tell_of_service, "/spawn"), "cancelled"]
 
 
 def test_nodes_of_a_launch_wait_longer(monkeypatch):

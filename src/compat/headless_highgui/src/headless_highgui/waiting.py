@@ -16,7 +16,8 @@ from terminal_language import translated
 
 SEEN = ("nav_msgs/Odometry", "sensor_msgs/CompressedImage", "sensor_msgs/Image",
         "sensor_msgs/LaserScan")  # by nodes that drive
-WATCHES_ITSELF = "nav_nodes"  # a program that has loaded this module says which topic is silent
+# Programs that have loaded one of these say themselves which topic is silent.
+WATCH_THEMSELVES = {"nav_nodes", "run_session"}
 SIMULATOR = "gazebo"  # node name, in any namespace
 GRACE = 5.0  # s, wall: a node that ends together with its simulator says nothing
 OF_A_LAUNCH = "__log:="  # an argument of its nodes, which start before what they wait for
@@ -82,9 +83,11 @@ def amend_services(services):
     wait = services.wait_for_service
 
     def wait_for_service(service, timeout=None):
+        if timeout is not None:  # the program says what it does then
+            return wait(service, timeout)
         timer = after_grace(tell_of_service, service)
         try:
-            wait(service, timeout)
+            wait(service)
         finally:
             timer.cancel()
 
@@ -107,7 +110,7 @@ def amend_topics(topics):
         remove(subscriber, connection)
         publisher = connection.callerid_pub.rpartition("/")[2]
         if (subscriber.closed or subscriber.type not in SEEN or publisher != SIMULATOR
-                or connection.endpoint_id in told or WATCHES_ITSELF in sys.modules):
+                or connection.endpoint_id in told or says_it_itself()):
             return
         told.add(connection.endpoint_id)
         later(GRACE, tell, subscriber.resolved_name, connection.endpoint_id)
@@ -138,7 +141,7 @@ def later(seconds, act, *words):
 def tell_of_silence(subscriber):
     """Log why no message has come, if none has."""
     name = subscriber.resolved_name
-    if (subscriber.closed or WATCHES_ITSELF in sys.modules
+    if (subscriber.closed or says_it_itself()
             or any(each.stat_num_msg for each in subscriber.connections)):
         return
     publishers = dict(asked("getSystemState")[0])
@@ -174,6 +177,10 @@ def asked(call, *words):
     import rospy
 
     return getattr(rosgraph.Master(rospy.get_name()), call)(*words)
+
+
+def says_it_itself():
+    return not WATCH_THEMSELVES.isdisjoint(sys.modules)
 
 
 def tell_once(form, *words):
