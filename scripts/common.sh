@@ -39,6 +39,16 @@ enter_workspace() {
   if [ ! -w "$home/.ros" ] && { [ -e "$home/.ros" ] || [ ! -w "$home" ]; }; then export ROS_HOME=$root/.setup/ros; fi
 }
 
+# Sends this shell, or what it becomes by exec, a SIGHUP when the terminal closes: of `ssh -t HOST make ...`, make alone gets it.
+end_with_terminal() {
+  { : < /dev/tty; } 2> /dev/null || return 0
+  setpriv --pdeathsig TERM python3 -c 'import os, select, sys
+terminal = select.poll()
+terminal.register(0, 0)  # its end alone: keys are read by others
+terminal.poll()
+os.kill(int(sys.argv[1]), 1)' $$ < /dev/tty > /dev/null 2>&1 &
+}
+
 # Sets up what a trial with these arguments needs.
 set_up_trial() {
   local options=()

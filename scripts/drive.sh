@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # The racecar, driven by keyboard: in a window if there is a screen, else in this terminal.
 failure_code=2
+trap 'exit 0' INT  # Ctrl-C is how it is meant to end: make has nothing to report
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" || exit 2
 enter_workspace
+end_with_terminal
 choose_master || exit 1
 set -- ackermann:=true command_timeout:=true "$@"
 if [ -n "${DISPLAY:-}" ]; then
@@ -17,8 +19,8 @@ mkdir -p "$root/out"
 roslaunch racecar_description car_control.launch gui:=false keyboard:=false "$@" \
   > "$root/out/drive.log" 2>&1 < /dev/null &
 launched=$!
-trap 'kill -INT "$launched" 2> /dev/null || true; wait "$launched" || true' EXIT
-trap 'exit 0' INT  # Ctrl-C is how it is meant to end
+# SIGTERM, as one in the background ignores SIGINT at first
+trap 'kill "$launched" 2> /dev/null || true; wait "$launched" || true' EXIT
 trap 'exit 130' TERM HUP
 echo $"The car is starting; the nodes' output is in out/drive.log."
 until rosservice list > /dev/null 2>&1; do

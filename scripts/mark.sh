@@ -11,6 +11,7 @@ case " $* " in *" --no"*) stays_root= ;; esac
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 set_up_trial "$@"
 enter_workspace
+end_with_terminal
 owner=$(stat -c %u "$root")
 [ "$(id -u)" != "$owner" ] || exec python3 "$root/src/marking/scripts/mark.py" "$@"
 code=0  # leave no files owned by root in a user's out/

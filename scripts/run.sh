@@ -27,4 +27,5 @@ case $self in
   *) set_up_trial "$@"; program=src/evaluation/scripts/${self/%course/course_run}.py ;;
 esac
 enter_workspace
+end_with_terminal
 exec python3 "$root/$program" "$@"

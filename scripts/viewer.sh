@@ -3,9 +3,11 @@
 #
 #   scripts/viewer.sh [control:=true] [rviz:=FILE] [port:=8080] [address:=0.0.0.0] ...   as in viewer.launch
 failure_code=2
+trap 'exit 0' INT  # Ctrl-C is how it is meant to end: make has nothing to report
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 "$root/scripts/setup.sh" || exit 2
 enter_workspace
+end_with_terminal
 arguments=()
 for word in "$@"; do
   if [[ $word == rviz:=?* ]]; then
@@ -27,12 +29,11 @@ if ! choose_master; then
   exit 1
 fi
 mkdir -p "$root/out"
-# Each ends with this shell, also one that is killed.
-setpriv --pdeathsig INT roslaunch learning_topic 0course.launch gui:=false > "$root/out/viewer.log" 2>&1 < /dev/null &
+# Each ends with this shell, also one that is killed. By SIGTERM, as one in the background ignores SIGINT at first.
+setpriv --pdeathsig TERM roslaunch learning_topic 0course.launch gui:=false > "$root/out/viewer.log" 2>&1 < /dev/null &
 launched=$!
 page=
-trap 'kill -INT $launched $page 2> /dev/null || true; wait $launched $page || true' EXIT
-trap 'exit 0' INT  # Ctrl-C is how it is meant to end: make has nothing to report
+trap 'kill $launched $page 2> /dev/null || true; wait $launched $page || true' EXIT
 trap 'exit 130' TERM HUP
 say $"The course is starting; its nodes' output is in out/viewer.log. Ctrl-C ends both course and page."
 until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; do
@@ -49,7 +50,7 @@ if [ -n "$running" ]; then
   wait "$launched" || true
 else
   # In the background: otherwise this shell would react to a container's SIGTERM only after the page has ended.
-  setpriv --pdeathsig INT roslaunch sim_viewer viewer.launch "${arguments[@]}" &
+  setpriv --pdeathsig TERM roslaunch sim_viewer viewer.launch "${arguments[@]}" &
   page=$!
   wait -n "$launched" "$page" || true
   kill -0 "$launched" 2> /dev/null && exit 1  # the page has said why it ended

@@ -1,15 +1,17 @@
 """Which node is there, by what it answers itself: a master and nodes of the test's own."""
 
+import os
 import socket
 import threading
 from contextlib import contextmanager
 from socketserver import StreamRequestHandler, TCPServer
 from xmlrpc.server import SimpleXMLRPCServer
 
+import psutil
 import pytest
 
 from bullet_sim_ros import already_running
-from bullet_sim_ros.already_running import Sign, is_online, registering, sign_of_life
+from bullet_sim_ros.already_running import Sign, is_online, registering, sign_of_life, to_kill
 
 LIMIT = 60.0  # s
 NAME = "/gazebo"
@@ -58,6 +60,16 @@ def test_a_node_that_was_killed_and_is_still_registered():
 def test_who_answers_at_the_address(node, expected):
     with serving(node) as uri:
         assert sign(uri) is expected
+
+
+@pytest.mark.parametrize(("terminal", "pid", "expected"), [
+    (None, os.getpid(), os.getpid()), ("/dev/pts/3", os.getpid(), None),
+    (None, os.getppid(), None)])  # it has no such port: a number of another machine
+def test_what_ends_a_node_without_a_terminal(monkeypatch, terminal, pid, expected):
+    monkeypatch.setattr(psutil.Process, "terminal", lambda _: terminal)
+    with (serving(xmlrpc_server(getPid=lambda _: [1, "", pid])) as node,
+          serving(xmlrpc_server(lookupNode=lambda _caller, _node: [1, "", node])) as master):
+        assert to_kill(master, NAME) == expected
 
 
 def test_a_machine_whose_name_is_not_known_may_have_it():

@@ -3,8 +3,11 @@
 runs alone: the verbs know only the usual master, which other tests take while it is free.
 """
 
+import contextlib
 import os
+import pty
 import re
+import select
 import signal
 import socket
 import subprocess
@@ -109,6 +112,68 @@ def test_course_and_page_come_and_go_together(viewer, usual_port_free):
     os.killpg(process.pid, signal.SIGINT)  # as a terminal's Ctrl-C: to all of them
     process.wait(END_LIMIT)
     assert "Traceback" not in log.read_text() and "make: ***" not in log.read_text()
+
+
+def family(process: int) -> list[psutil.Process]:
+    """This process and all below it."""
+    return [psutil.Process(process), *psutil.Process(process).children(recursive=True)]
+
+
+@pytest.fixture
+def in_terminal():
+    """Starts the verb as `ssh -t HOST make viewer` does: its pid and the terminal's other side."""
+    started = []
+
+    def start() -> tuple[int, int]:
+        pid, terminal = pty.fork()
+        if pid == 0:
+            os.chdir(ROOT)
+            os.execlp("bash", "bash", "-c", f"make viewer PORT={free_port()}")
+        started.append(pid)
+        return pid, terminal
+
+    yield start
+    for pid in started:
+        with contextlib.suppress(ProcessLookupError, psutil.NoSuchProcess):
+            os.killpg(pid, signal.SIGTERM)
+            psutil.Process(pid).wait(END_LIMIT)
+
+
+def read_until(terminal: int, text: str) -> str:
+    """What is on the terminal, once it has this text."""
+    shown = b""
+    until = time.monotonic() + LIMIT
+    while text.encode() not in shown:
+        assert select.select([terminal], [], [], until - time.monotonic())[0], shown
+        shown += os.read(terminal, 65536)
+    return shown.decode()
+
+
+def test_it_ends_with_the_terminal_of_which_make_is_the_leader(in_terminal):
+    pid, terminal = in_terminal()
+    read_until(terminal, "viewer: http://")
+    all_of_it = family(pid)
+    os.close(terminal)
+    assert psutil.wait_procs(all_of_it, END_LIMIT)[1] == []
+
+
+def course_starts(process: int) -> bool:
+    """Whether its roslaunch is there, which has not set its handlers of signals yet."""
+    with contextlib.suppress(psutil.NoSuchProcess):
+        return any("0course.launch" in each.cmdline() and "python" in each.cmdline()[0]
+                   for each in family(process))
+    return False
+
+
+def test_ctrl_c_ends_it_while_it_starts_and_make_adds_nothing(in_terminal):
+    pid, terminal = in_terminal()
+    read_until(terminal, "The course is starting")
+    until = time.monotonic() + LIMIT
+    while not course_starts(pid) and time.monotonic() < until:
+        time.sleep(0.01)
+    os.write(terminal, b"\x03")
+    assert psutil.Process(pid).wait(END_LIMIT) in (0, -signal.SIGINT)
+    assert "make: ***" not in os.read(terminal, 65536).decode()
 
 
 def again(verb: str) -> str:

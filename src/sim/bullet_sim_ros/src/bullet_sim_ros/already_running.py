@@ -16,9 +16,11 @@ import xmlrpc.client
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import Enum
+from pathlib import Path
 from urllib.parse import urlsplit
 from xml.parsers.expat import ExpatError
 
+import psutil
 from rosgraph.names import get_ros_namespace, load_mappings, ns_join, resolve_name
 
 from bullet_sim_ros.names import CLOCK
@@ -88,6 +90,25 @@ def sign_of_life(master_uri: str, name: str) -> Sign:
             ValueError):
         return Sign.GONE  # its port is another program's by now
     return Sign.ANSWERS if told == name else Sign.GONE
+
+
+def to_kill(master_uri: str, name: str) -> int | None:
+    """What ends a node that runs on this machine without a terminal, where no Ctrl-C can: the
+    process, or the roslaunch that started it; None for any other node.
+    """
+    _, _, uri = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport(ANSWER_TIME)).lookupNode(
+        name, name)
+    with contextlib.suppress(psutil.Error, OSError, xmlrpc.client.Error, ExpatError, TypeError,
+                             ValueError):
+        node = xmlrpc.client.ServerProxy(uri, ImpatientTransport(ANSWER_TIME))
+        process = psutil.Process(node.getPid(name)[2])
+        if urlsplit(uri).port not in {one.laddr.port for one in process.net_connections("tcp")}:
+            return None  # a number of another machine, or of a container
+        parent = process.parent()
+        if parent and any(Path(word).name == "roslaunch" for word in parent.cmdline()[:2]):
+            process = parent
+        return None if process.terminal() else process.pid
+    return None
 
 
 @contextmanager

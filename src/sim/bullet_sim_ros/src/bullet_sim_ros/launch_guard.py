@@ -57,7 +57,7 @@ def refusal_of(command: list[str]) -> str:
         refused = [refusal(uri, name) for name in simulators_of(files, command)]
     except (OSError, RLException, ResourceNotFound, ValueError):
         return ""  # no master; or a fault of the file, which roslaunch reports itself
-    return next((form % what for form, what in filter(None, refused)), "")
+    return next((form % tuple(what) for form, *what in filter(None, refused)), "")
 
 
 def simulators_of(files: list[str], command: list[str]) -> list[str]:

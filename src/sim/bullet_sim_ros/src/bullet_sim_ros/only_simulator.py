@@ -19,11 +19,14 @@ from bullet_sim_ros.already_running import (
     is_online,
     registering,
     sign_of_life,
+    to_kill,
 )
 
 DEFAULT_NAME = "gazebo"
 RUNS_ALREADY = ("A simulator runs already on this master (%s). End it with Ctrl-C in its terminal, "
                 "then type this again.")
+NO_TERMINAL = ("A simulator runs already on this master (%s), without a terminal. End it with: "
+               "kill %s, then type this again.")
 HANGS = ("A simulator is on this master, but does not answer (%s). End it with: killall -9 "
          "gzserver, then type this again.")
 UNKNOWN = ("A simulator is registered on this master (%s), by a machine whose name this one "
@@ -34,13 +37,16 @@ AGES = ((3600, "world %s, started %d h ago"), (60, "world %s, started %d min ago
 
 
 def refusal(master_uri: str, name: str) -> tuple[str, ...]:
-    """Why no simulator may start under this full name: a format string and its argument; else ().
+    """Why no simulator may start under this full name: a format string and its arguments; else ().
 
     OSError if there is no master.
     """
     sign = sign_of_life(master_uri, name)
     if sign is Sign.GONE:
         return ()
+    process = to_kill(master_uri, name) if sign is Sign.ANSWERS else None
+    if process:
+        return NO_TERMINAL, _what_runs(master_uri, name), process
     return SAYINGS[sign], _what_runs(master_uri, name)
 
 
@@ -81,7 +87,7 @@ def main() -> int:
     uri = rosgraph.get_master_uri()
     refused = refusal(uri, f"/{DEFAULT_NAME}") if is_online(uri) else ()
     if refused:
-        print(refused[0] % refused[1], file=sys.stderr)
+        print(refused[0] % refused[1:], file=sys.stderr)
     return 1 if refused else 0
 
 
