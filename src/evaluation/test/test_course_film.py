@@ -13,14 +13,17 @@ import cv2
 import numpy as np
 import pytest
 import rospy
+from lane_keeping.world import ground
+from racecar_description.track import course_model, painting
 from racecar_description.track.closed_line import build_track
 from racecar_description.track.track_file import load_track_file
 from sensor_msgs.msg import Image
 
 import evaluation.film
-from evaluation.course_run import CourseFilm
-from evaluation.film import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, FilmFile, fit
+from evaluation.course_run import FOUND, SEEN, CourseFilm
+from evaluation.film import BAR_PX, FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, FilmFile, fit
 from evaluation.lap import LapScorer, Sample
+from evaluation.picture import CAR, LEGEND_PX, START, bgr
 from run_session.course_file import load_course
 
 pytestmark = pytest.mark.processes  # encoders, and limits of time
@@ -89,6 +92,28 @@ def test_a_drive_at_fifteen_times_the_speed_loses_no_second_in_which_the_machine
 def test_the_camera_keeps_its_proportions(size_px, view_px):
     width, height = size_px
     assert fit(np.zeros((height, width, 3), np.uint8)).shape[1::-1] == view_px
+
+
+def test_the_line_keeps_its_colour_beside_its_outline_and_the_path_and_words_say_which(tmp_path):
+    """It was tinted until it was orange."""
+    film = new_film(tmp_path / "run.mp4", FILM_PERIOD, Sample(0.0, 0.0, 0.0, 0.0))
+    view = np.full((*VIEW_PX[::-1], 3), 10, np.uint8)
+    view[180:, 310:330] = bgr("#ffff00")
+    page = film.page(view, 0.0)
+    assert tuple(page[BAR_PX + 200, 320]) == bgr("#ffff00")
+    assert tuple(page[BAR_PX + 200, 308]) == bgr(SEEN)  # beside it, not on it
+    legend = page[-LEGEND_PX:].reshape(-1, 3).tolist()
+    for part, shown in (((0, 640), SEEN), ((0, 640), FOUND), ((640, 1160), "#ffff00"),
+                        ((640, 1160), START), ((640, 1160), CAR)):
+        assert list(bgr(shown)) in page[BAR_PX:-LEGEND_PX, slice(*part)].reshape(-1, 3).tolist()
+        assert list(bgr(shown)) in legend
+
+
+@pytest.mark.parametrize("course, painted", [
+    ("course", course_model.YELLOW), ("race", painting.YELLOW), ("lane", ground.ROAD),
+    ("lane_empty", ground.ROAD)])
+def test_pictures_have_the_colour_in_which_the_line_is_painted(course, painted):
+    assert bgr(load_course(course).line_colour) == painted[::-1]
 
 
 PAGE = np.zeros((360, 640, 3), np.uint8)

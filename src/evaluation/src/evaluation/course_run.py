@@ -15,10 +15,20 @@ from racecar_description.track.closed_line import build_track
 from racecar_description.track.track_file import TrackFile, load_track_file
 
 from evaluation.command_line import LARGEST_SEED, Parser, number, one_of
-from evaluation.film import FAST_FILM_PERIOD, FILM_PERIOD, CameraFilm, side_by_side
+from evaluation.film import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, CameraFilm, side_by_side
 from evaluation.lap import LapScorer, Verdict
 from evaluation.live import CarDrive, Outcome
-from evaluation.picture import CAR, course_plan, lap_colour, path_picture, write_png
+from evaluation.picture import (
+    CAR,
+    START,
+    WHITE,
+    bgr,
+    course_plan,
+    lap_colour,
+    legend_bar,
+    path_picture,
+    write_png,
+)
 from evaluation.report import cell, table, write_json
 from run_session.course_file import CourseFile, drivers, load_course
 from run_session.failure import RunError
@@ -92,7 +102,7 @@ def _read(path: Path) -> dict:
 
 PLAN_PX = 520
 MASK_LOW, MASK_HIGH = (20, 43, 46), (90, 255, 255)  # HSV, the lessons' bounds for yellow
-MASK_TINT = (80, 60, 240)
+SEEN, FOUND = "#ff3cff", "#ff0000"  # round the mask's pixels, and where lesson 05 finds the line
 
 
 class CourseFilm(CameraFilm):
@@ -102,7 +112,11 @@ class CourseFilm(CameraFilm):
                  period: float):
         super().__init__(path, course.camera, period)
         self._band, self._drive = course.film_band, drive
-        self._floor, self._drawn = course_plan(track_file, PLAN_PX), 0
+        self._floor, self._drawn = course_plan(track_file, PLAN_PX, course.line_colour), 0
+        marked = (("seen as yellow", SEEN), ("line found", FOUND)) if self._band else ()
+        lines = (("line", course.line_colour), ("right edge", WHITE), ("driven", lap_colour(0)),
+                 ("start", START), ("car", CAR))
+        self._legend = np.hstack([legend_bar(VIEW_PX[0], marked), legend_bar(PLAN_PX, lines)])
 
     def page(self, view: np.ndarray, now: float) -> np.ndarray:
         drive = self._drive
@@ -111,7 +125,8 @@ class CourseFilm(CameraFilm):
             270: f"lap {drive.present_lap}/{drive.wanted_laps}   {drive.total.distance:5.2f} m"
                  f"   beside the line {drive.lateral * 100:+5.1f} cm",
         }
-        return side_by_side(mark_line(view, self._band), self._plan(), words, self._period)
+        page = side_by_side(mark_line(view, self._band), self._plan(), words, self._period)
+        return np.vstack([page, self._legend])
 
     def _plan(self) -> np.ndarray:
         """The course with the path so far and the car."""
@@ -127,22 +142,22 @@ class CourseFilm(CameraFilm):
 
 
 def mark_line(view: np.ndarray, band: float) -> np.ndarray:
-    """Tint the pixels in the lessons' mask, and draw a red dot where lesson 05 finds the line.
+    """Outline the pixels in the lessons' mask, and draw a dot where lesson 05 finds the line.
 
     It looks in a band at this share of the height; `band` 0: return the image as it is.
     """
     if not band:
         return view
     mask = cv2.inRange(cv2.cvtColor(view, cv2.COLOR_BGR2HSV), MASK_LOW, MASK_HIGH)
-    marked, line = view.copy(), mask > 0
-    marked[line] = 0.35 * view[line] + 0.65 * np.array(MASK_TINT)
+    marked = view.copy()  # inside the outline the line keeps its colour
+    marked[cv2.dilate(mask, np.ones((5, 5), np.uint8)) > mask] = bgr(SEEN)
     height = view.shape[0]
     top, deep = round(band * height), max(1, round(20 * height / 1080))
     cv2.rectangle(marked, (0, top), (view.shape[1] - 1, top + deep), (120, 120, 120), 1)
     moments = cv2.moments(mask[top : top + deep], binaryImage=True)
     if moments["m00"] > 0:
         centre = round(moments["m10"] / moments["m00"]), top + deep // 2
-        cv2.circle(marked, centre, 9, (0, 0, 255), -1, cv2.LINE_AA)
+        cv2.circle(marked, centre, 9, bgr(FOUND), -1, cv2.LINE_AA)
         cv2.circle(marked, centre, 9, (255, 255, 255), 1, cv2.LINE_AA)
     return marked
 
@@ -245,7 +260,8 @@ class CourseRun(CarDrive):
             **({"sensor_sha256": self.sensor_sums} if self.sensor_sums else {})}
 
     def write(self, report: dict) -> list[str]:
-        picture = path_picture(self.track_file, self.drive, *_titles(self.driver, report))
+        picture = path_picture(self.track_file, self.drive, self.course.line_colour,
+                               *_titles(self.driver, report))
         write_png(self.out / "path.png", picture)
         found = [followers_table(write_report(self.out, self.driver, report), self.driver)]
         if self.options.fast and report["frames_dropped"]:

@@ -21,9 +21,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PAPER, FLOOR, GRID, TEXT, FAINT = "#181a1e", "#0e0e10", "#24272c", "#e4e8eb", "#989ea5"
-LINE, WHITE = "#f5d728", "#e1e1e1"  # the course's line that the car follows, and its other line
+LINE, WHITE = "#ffff00", "#e1e1e1"  # lines of AutoRace's courses, as cameras see them
 LAPS = ("#46aaf0", "#fa6e6e", "#5ad282", "#d278dc", "#fabe5a", "#50c8c8")
 CAR, GOOD, BAD, HIDDEN = "#f03c3c", "#5ad282", "#faaa3c", "#6e8296"
+START = "#ff8c00"
 
 
 def lap_colour(number: int) -> str:
@@ -92,20 +93,21 @@ class Plan:
         """Draw an arrow head (length in m) with its reference point at x, y, yaw."""
         corners = _fixed(self.to_px(arrow(pose, length)))
         cv2.fillPoly(self.image, [corners], bgr(colour), cv2.LINE_AA, SHIFT)
-        cv2.polylines(self.image, [corners], True, (255, 255, 255), 1, cv2.LINE_AA, SHIFT)
+        cv2.polylines(self.image, [corners], True, (255, 255, 255), 2, cv2.LINE_AA, SHIFT)
 
 
-def course_plan(track_file: TrackFile, width_px: int, margin: float = 0.15) -> Plan:
+def course_plan(track_file: TrackFile, width_px: int, line_colour: str,
+                margin: float = 0.15) -> Plan:
     """A view of the floor with a 0.5 m grid, the two lines and the start."""
     yellow = build_track(track_file)
     white = yellow.offset(-track_file.lane_width)
     points = np.array(yellow.points() + white.points())
     plan = Plan(points.min(axis=0) - margin, points.max(axis=0) + margin, width_px)
     plan.grid(0.5)
-    for line, colour in ((white, WHITE), (yellow, LINE)):
+    for line, colour in ((white, WHITE), (yellow, line_colour)):
         plan.line(line.points(), colour, max(2, round(track_file.line_width * plan.px_per_m)),
                   closed=True)
-    plan.line(start_mark(yellow.pose(0.0)), TEXT, 2)
+    plan.line(start_mark(yellow.pose(0.0)), START, 3)
     return plan
 
 
@@ -130,6 +132,19 @@ def write_text(image: np.ndarray, text: str, at_px: tuple[int, int], height_px: 
     scale = cv2.getFontScaleFromHeight(FONT, height_px, thick)
     cv2.putText(image, text, at_px, FONT, scale, colour, thick, cv2.LINE_AA)
     return cv2.getTextSize(text, FONT, scale, thick)[0][0]
+
+
+LEGEND_PX = 28  # height of a legend's bar
+
+
+def legend_bar(width_px: int, entries: Iterable[tuple[str, str]]) -> np.ndarray:
+    """A bar (LEGEND_PX, width, 3), BGR, that says in words what colours mean."""
+    bar = np.full((LEGEND_PX, width_px, 3), bgr(PAPER), np.uint8)
+    left, middle = 16, LEGEND_PX // 2
+    for text, colour in entries:
+        cv2.rectangle(bar, (left, middle - 3), (left + 18, middle + 3), bgr(colour), -1)
+        left += 46 + write_text(bar, text, (left + 25, middle + 5), 11)
+    return bar
 
 
 def _fixed(points_px: np.ndarray) -> np.ndarray:
@@ -176,9 +191,10 @@ def legend(axes: Axes) -> None:
     axes.legend(facecolor=PAPER, edgecolor=GRID, labelcolor=TEXT, fontsize=9)
 
 
-def draw_arrow(axes: Axes, pose: Sequence[float], length: float, colour: str) -> None:
-    """Draw an arrow head of this length (m) at x, y, yaw; m, rad."""
-    axes.fill(*arrow(pose, length).T, facecolor=colour, edgecolor="white", zorder=5)
+def draw_arrow(axes: Axes, pose: Sequence[float], length: float, colour: str,
+               text: str | None = None) -> None:
+    """Draw an arrow head of this length (m) at x, y, yaw; m, rad; `text` goes into the legend."""
+    axes.fill(*arrow(pose, length).T, facecolor=colour, edgecolor="white", zorder=5, label=text)
 
 
 def pixels(figure: Figure) -> np.ndarray:
@@ -195,7 +211,8 @@ def write_png(path: Path, picture: np.ndarray) -> None:
     write_whole(path, cv2.imencode(".png", picture)[1].tobytes())
 
 
-def path_picture(track_file: TrackFile, drive: LapScorer, title: str, subtitle: str) -> np.ndarray:
+def path_picture(track_file: TrackFile, drive: LapScorer, line_colour: str, title: str,
+                 subtitle: str) -> np.ndarray:
     """The driven path over the course (rows, 1400, 3), BGR, a colour for each lap."""
     yellow = build_track(track_file)
     white = yellow.offset(-track_file.lane_width)
@@ -203,11 +220,11 @@ def path_picture(track_file: TrackFile, drive: LapScorer, title: str, subtitle: 
     everything = np.concatenate(lines)
     figure, axes = map_sheet(title, subtitle, everything.min(0) - 0.15, everything.max(0) + 0.15)
     points_a_metre = 72 * (WIDTH - 2 * SIDE) / (np.ptp(everything[:, 0]) + 0.3)
-    texts = ("yellow: what the car follows", "white: right edge of the lane")
-    for points, colour, text in zip(lines, (LINE, WHITE), texts, strict=True):
+    texts = ("the line that the car follows", "right edge of the lane")
+    for points, colour, text in zip(lines, (line_colour, WHITE), texts, strict=True):
         axes.plot(*points.T, color=colour, label=text,
                   linewidth=max(1.5, track_file.line_width * points_a_metre))
-    axes.plot(*start_mark(yellow.pose(0.0)).T, color=TEXT, linewidth=2)
+    axes.plot(*start_mark(yellow.pose(0.0)).T, color=START, linewidth=3, label="start")
     _draw_laps(axes, drive)
     legend(axes)
     return pixels(figure)
@@ -228,7 +245,7 @@ def _draw_laps(axes: Axes, drive: LapScorer) -> None:
         axes.plot([], [], color=FAINT,
                   label=f"laps {len(LAPS) + 1} to {numbers[-1] + 1}: the same colours again")
     last = drive.samples[-1]
-    draw_arrow(axes, (last.x, last.y, last.yaw), 0.2, CAR)
+    draw_arrow(axes, (last.x, last.y, last.yaw), 0.2, CAR, "car at the end")
 
 
 def _lap_figures(drive: LapScorer, number: int) -> str:

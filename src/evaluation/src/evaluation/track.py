@@ -217,7 +217,8 @@ COURSE = CourseFile(
     followers="scripts/visual_tracker*.py", follower=PID, drives_by="cmd_vel",
     robot="my_robot", robot_argument="", track="", off_course=0.0, out="out/track",
     camera="/camera/rgb/image_raw", camera_info="/camera/rgb/camera_info", commands="/cmd_vel",
-    odometry="/ground_truth", controllers="/", lockstep=("/cmd_vel",), sensors=(), film_band=0.0)
+    odometry="/ground_truth", controllers="/", lockstep=("/cmd_vel",), sensors=(),
+    line_colour="", film_band=0.0)
 ANSWER_LIMIT = 10.0  # s, wall, for the tracker's answer: a busy machine must not change a drive
 LONGEST = 120.0      # s, simulated, to reach a static cylinder
 

@@ -39,6 +39,7 @@ class CourseFile:
     controllers: str  # namespace of the controller manager that takes the lockstep topics, or ""
     lockstep: Topics  # topics that the world waits for after each image
     sensors: Topics  # topics that go into the fingerprint
+    line_colour: str  # #rrggbb, in pictures: of the line that is followed, as the camera sees it
     film_band: float  # share of the image's height at which the video marks the line; 0: nowhere
 
     def robot_name(self, launch_args: tuple[str, ...]) -> str:
