@@ -55,7 +55,7 @@ def start(tmp_path):
     package = tmp_path / "bullet_sim_ros"
     package.mkdir()
     (package / "__init__.py").touch()
-    (package / "package_paths.py").write_text("def missing_world(name): return ''")
+    (package / "package_paths.py").write_text("def unreadable_world(name): return ''")
     (package / "__main__.py").write_text(FAKE_NODE)
     running = []
 
@@ -105,14 +105,18 @@ def test_gazebo_typed_is_roslaunch_with_the_world_and_the_page(start, tmp_path):
         f"extra_gazebo_args:=-u '{tmp_path}/my own.world'"]
 
 
-def test_a_world_that_is_not_there_ends_it_without_a_master(tmp_path):
+@pytest.mark.parametrize(("world", "reason"), [
+    ("nothere.world", "not found (searched: "), ("broken.world", "is not well-formed XML: ")])
+def test_a_world_that_cannot_be_read_ends_it_without_a_master(tmp_path, world, reason):
+    (tmp_path / "broken.world").write_text("<sdf><world")
     for name in ("gazebo", "gzserver"):
         done = subprocess.run(
-            [sys.executable, SCRIPTS / name, "nothere.world"], text=True, cwd=tmp_path, timeout=60,
+            [sys.executable, SCRIPTS / name, world], text=True, cwd=tmp_path, timeout=60,
             env=os.environ | {"ROS_MASTER_URI": "http://127.0.0.1:9"}, capture_output=True,
             check=False)
         assert (done.returncode, done.stdout) == (1, "")
-        assert done.stderr.startswith("[FATAL] Could not open file nothere.world: ")
+        assert done.stderr.startswith(f"[FATAL] Could not open file {world}: ")
+        assert reason in done.stderr
         assert done.stderr.count("\n") == 1
 
 

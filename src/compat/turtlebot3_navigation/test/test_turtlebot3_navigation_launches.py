@@ -96,16 +96,17 @@ def test_hector():
     assert load(SLAM, "turtlebot3_hector", "map_size:=512")[1]["/hector_mapping/map_size"] == 512
 
 
-@pytest.mark.parametrize("method", OTHER_METHODS)
-def test_other_methods_say_what_to_type(method):
-    nodes, _ = load(SLAM, "turtlebot3_slam", f"slam_methods:={method}", "open_rviz:=false")
-    node = nodes[f"/turtlebot3_slam_{method}"]
-    assert node.required
-    done = subprocess.run([sys.executable, SLAM / "nodes" / node.type, *node.args.split()],
-                          text=True, capture_output=True, timeout=60)
+@pytest.mark.parametrize(("words", "method", "meant"), [
+    *((["turtlebot3_slam.launch", f"slam_methods:={method}"], method, "gmapping")
+      for method in (*OTHER_METHODS, "gmaping")),
+    (["turtlebot3_slam.launch", "slam_methods:=hektor"], "hektor", "hector"),
+    *(([f"turtlebot3_{method}.launch"], method, "gmapping") for method in OTHER_METHODS)])
+def test_other_methods_end_with_1_and_say_what_to_type(words, method, meant):
+    done = subprocess.run(["roslaunch", "--nodes", "turtlebot3_slam", *words], text=True,
+                          capture_output=True, timeout=60)
     assert done.returncode == 1
-    assert f"slam_methods:={method} needs" in done.stderr
-    assert "slam_methods:=gmapping" in done.stderr
+    assert f"slam_methods:={method} is not here" in done.stderr
+    assert "there are: gmapping, hector." in done.stderr and f"slam_methods:={meant}" in done.stderr
 
 
 @pytest.mark.parametrize("package, name, config", [

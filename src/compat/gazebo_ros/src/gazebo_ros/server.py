@@ -66,10 +66,10 @@ def launch() -> None:
     """Become roslaunch with this command line's world and the page; it starts a missing master."""
     words = sys.argv[1:]
     options, _ = parser("gazebo").parse_known_args([word for word in words if ":=" not in word])
-    from bullet_sim_ros.package_paths import missing_world  # its imports would delay gzserver
+    from bullet_sim_ros.package_paths import unreadable_world  # its imports would delay gzserver
 
-    if missing := missing_world(options.world):  # roslaunch would end with 0
-        sys.exit(f"[FATAL] {missing}")
+    if unreadable := unreadable_world(options.world):  # roslaunch would end with 0
+        sys.exit(f"[FATAL] {unreadable}")
     # roslaunch starts nodes in another folder
     words = [str(Path(word).resolve()) if Path(word).is_file() else word for word in words]
     os.execvp("roslaunch", [

@@ -3,11 +3,12 @@
 import difflib
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 LINE_BREAK = re.compile(r"\s*[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]\s*")  # those of str.splitlines
+MOST_NAMES = 6  # of folders, or of files that there are
 LONGEST_LINE = 900  # characters: a name in a file, or a list of names, may have any length
 
 
@@ -58,6 +59,11 @@ def nearest_file(path: Path | str) -> str:
     return did_you_mean(path.name, beside, 0.75)
 
 
+def _some(names: Sequence[str]) -> str:
+    """The first of them: a line that names all would be cut in its midst."""
+    return ", ".join([*names[:MOST_NAMES], "…"] if len(names) > MOST_NAMES else names)
+
+
 class ResourceNotFound(SimulationError):
     """A URI or file name is in none of the searched folders; `hint`: the end of a line."""
 
@@ -66,9 +72,10 @@ class ResourceNotFound(SimulationError):
         self.uri = uri
         self.hint = hint
         self.searched = tuple(str(place) for place in searched)
-        places = ", ".join(self.searched) or "nowhere to look"
+        places = _some(self.searched) or "nowhere to look"
         by_name = {Path(name).name: name for name in known}
-        there_are = f"; there are: {', '.join(by_name.values())}" if by_name else ""
+        nearest = difflib.get_close_matches(Path(uri).name, by_name, len(by_name) or 1, 0.0)
+        there_are = f"; there are: {_some([by_name[name] for name in nearest])}" if by_name else ""
         super().__init__(f"{uri} not found (searched: {places})"
                          f"{hint or did_you_mean(Path(uri).name, by_name, 0.75)}{there_are}")
 

@@ -25,7 +25,7 @@ from bullet_sim_ros import loop, names, topic_faults
 from bullet_sim_ros.lockstep import split
 from bullet_sim_ros.metrics import MetricsTopic
 from bullet_sim_ros.only_simulator import register
-from bullet_sim_ros.package_paths import missing_world, open_resources
+from bullet_sim_ros.package_paths import open_resources, unreadable_world
 from bullet_sim_ros.params import NodeParameters, read_node_parameters
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.rospy_patches import keep_every_publisher, send_promptly
@@ -181,8 +181,8 @@ def main() -> int:
     options = parse(rospy.myargv(sys.argv)[1:])
     sys.setswitchinterval(SWITCH_INTERVAL)
     sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too
-    if not rosgraph.is_master_online() and (missing := missing_world(options.world)):
-        print(f"[FATAL] {missing}", file=sys.stderr)
+    if not rosgraph.is_master_online() and (unreadable := unreadable_world(options.world)):
+        print(f"[FATAL] {unreadable}", file=sys.stderr)
         return 1
     wait_for_master()
     send_promptly()

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 
 import rospkg
 
-from bullet_sim.errors import FormatError, ResourceNotFound
+from bullet_sim.errors import FormatError, ResourceNotFound, SimulationError
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.xml_values import child_text, read_xml_file
 from bullet_sim_ros.unsourced import unsourced
@@ -78,11 +78,11 @@ def open_resources(environ: Mapping[str, str] = os.environ) -> Resources:
     )
 
 
-def missing_world(name: str) -> str:
-    """Why a world's file cannot be opened, for who has no ROS master yet; "" if it is there."""
+def unreadable_world(name: str) -> str:
+    """Why a world's file cannot be opened, for who has no ROS master yet; "" if it can."""
     try:
-        open_resources().find_world(name)
-    except ResourceNotFound as error:
+        read_xml_file(open_resources().find_world(name))
+    except SimulationError as error:
         return f"Could not open file {name}: {error}"
     return ""
 
