@@ -96,7 +96,8 @@ OF_TABLES = (
     "mission", "passed", "after s", "contacts", "why not", "yes", "mapping", "goals", "standing")
 # Of progress lines, whose frame has few words.
 OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off",
-               "{0} points", "{0} points, {1}", "closed", "stalled", "time is up", "ended early",
+               "{0} points", "{0} points, {1}", "{0}; lost {1} points: {2}", "exit code {0}",
+               "closed", "stalled", "time is up", "ended early",
                "not allowed", "not run", "fault", "preview: {0}", "next:")
 # Of an exercise's findings, whose values may be a word.
 OF_FINDINGS = ("pass  {0}", "FAIL  {0}", "{0}, wanted {1}", "at least {0}", "at most {0}",

@@ -59,7 +59,7 @@ def boxed(kind, tmp_path):
 
 @pytest.mark.parametrize(("user", "advice"), [
     (1000, r"allows this user no namespaces \(Operation not permitted\); as root it may be: "
-           "sudo make mark; in Docker give --privileged"),
+           "sudo make mark SUBMISSIONS=DIR; in Docker give --privileged"),
     (0, r"allows root no namespaces \(Operation not permitted\); in Docker give --privileged")])
 def test_a_refusal_says_what_would_allow_it(monkeypatch, user, advice):
     monkeypatch.setattr(os, "getuid", lambda: user)

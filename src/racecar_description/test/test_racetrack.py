@@ -2,6 +2,7 @@
 
 import math
 import re
+import subprocess
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -22,6 +23,16 @@ TRACK = PACKAGE / "tracks" / "racetrack.yaml"
 FIELD = (12.0, 8.0)  # m, inside the walls
 COLOURS = {"lawn": (60, 90), "road": (45, 65), "white": (225, 245), "yellow": (240, 255)}  # red
 LAUNCHES = ("racecar.launch", "car_control.launch")
+
+
+def test_the_spawner_of_a_second_car_is_told_its_simulator():
+    def of(*words):
+        return subprocess.run(
+            ["roslaunch", "racecar_description", "racecar.launch", "--args", "/spawn_urdf", *words],
+            text=True, capture_output=True, timeout=60, check=True).stdout
+
+    assert "-gazebo_namespace /gazebo " in of()
+    assert "-gazebo_namespace /two/gazebo " in of("gazebo_namespace:=/two/gazebo")
 
 
 @pytest.fixture(scope="module")

@@ -193,10 +193,15 @@ class SpawnModelStory(unittest.TestCase):
         self.assertEqual((process.returncode, late.names()), (0, ["spawn_urdf_model"]), said)
 
     def test_a_simulator_in_another_namespace_is_named(self):
+        FakeGazebo("/tb3_0/gazebo")
         process = self.start_before_the_simulator("/one/gazebo")
-        self.assertIn(
-            "Nobody offers /one/gazebo/spawn_urdf_model. A simulator runs as: /gazebo "
-            "(spawn_model: -gazebo_namespace /gazebo)", process.stdout.readline())
+        in_a_group = self.start(*PLAIN, "-gazebo_namespace", "/one/gazebo",
+                                namespace="/tb3_0")
+        said = ("Nobody offers /one/gazebo/spawn_urdf_model. A simulator runs as: /gazebo, "
+                "/tb3_0/gazebo (spawn_model: -gazebo_namespace ")
+        self.assertIn(f"{said}/gazebo)", process.stdout.readline())
+        lines = [in_a_group.stdout.readline() for _ in range(3)]
+        self.assertTrue(any(f"{said}/tb3_0/gazebo)" in line for line in lines), lines)
 
     def test_stopped_before_there_is_a_simulator(self):
         # conforms: spawn_model/exit codes

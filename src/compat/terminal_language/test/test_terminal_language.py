@@ -216,6 +216,9 @@ def test_a_catalogue_is_read_once():
      "浏览器页面的 RViz 标签页"),
     ("line 1: it ends as lines do on Windows, so that no interpreter is found; type: sed x",
      "行尾是 Windows 的换行符，因此找不到解释器；请输入：sed x"),
+    ("[1/1] anna/0-1: 0 points, fault; lost 100 points: the program ended (exit code 1): "
+     "ModuleNotFoundError: No module named 'x'",
+     "0 分，出错；扣 100 分：程序结束了（退出码 1）: ModuleNotFoundError: No module named 'x'"),
     ("gz model: what is to be done with the model? Type: gz model --help",
      "gz model: 要对模型做什么？"),
     ("spawn_model: error: one of the arguments -file -param is required",

@@ -46,7 +46,7 @@ def available() -> Kind:
     if done.returncode:
         why = done.stderr.strip().splitlines()[-1:] or ["no reason given"]
         who, way = (("root", "") if kind is Kind.ROOT else
-                    ("this user", "as root it may be: sudo make mark; "))
+                    ("this user", "as root it may be: sudo make mark SUBMISSIONS=DIR; "))
         raise RunError(f"no sandbox: this machine allows {who} no namespaces ({why[0]}); {way}in "
                        "Docker give --privileged; scripts/mark.sh --no-sandbox runs submissions "
                        "unprotected")

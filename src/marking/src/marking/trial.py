@@ -167,8 +167,11 @@ class MarkingTrial(Trial):
         return all(mark.outcome != NOT_RUN for mark in results)
 
     def line(self, result: Mark) -> str:
-        why = f": {result.lost[0]}" if result.lost else ""
-        return f"{result.name}: {result.points:g} points, {result.outcome}{why}"
+        had = f"{result.name}: {result.points:g} points, {result.outcome}"
+        if not result.lost:
+            return had
+        lost, _, why = result.lost[0].partition(" points: ")
+        return f"{had}; lost {lost} points: {why}"
 
     def table(self, results: Sequence[Mark]) -> str:
         rows = [(f"{mean([mark.points for mark in marks]):7.2f}", student)

@@ -30,8 +30,10 @@ def _name_others(service: str) -> None:
     """A warning, if simulators in other namespaces offer what nobody offers under this name."""
     with contextlib.suppress(OSError, rosgraph.MasterException):
         if others := simulators(service.rpartition("/")[2]):
+            near = f"{rospy.get_namespace()}gazebo"  # of the group that this node is in, too
+            advised = near if near in others else others[0]
             rospy.logwarn(f"Nobody offers {service}. A simulator runs as: {', '.join(others)} "
-                          f"(spawn_model: -gazebo_namespace {others[0]})")
+                          f"(spawn_model: -gazebo_namespace {advised})")
 
 
 def _is_missing(master: rosgraph.Master, name: str) -> bool:
