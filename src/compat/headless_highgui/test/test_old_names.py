@@ -130,3 +130,5 @@ def test_zeros_of_the_joint_state_publisher():
     assert [module.get_param(name) for name in asked] == [0.3, 0.5, None, 10]
     parameters.clear()
     assert module.get_param("zeros/elbow") is None
+    with pytest.raises(SystemExit, match="there is no robot_description; start the simulator"):
+        module.get_param("robot_description")

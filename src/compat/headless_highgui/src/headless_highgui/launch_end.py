@@ -4,6 +4,7 @@ from pathlib import PurePath
 
 # A program that a <param>'s command runs, and the exit code by which it refuses the launch file:
 REFUSALS = {"unless_running": 1,  # bullet_sim_ros: the simulator runs already
+            "not_this_method": 1,  # turtlebot3_slam: such a method is not here
             "xacro": 3}  # there is no such TurtleBot3; 2 is any other mistake, which is roslaunch's
 
 

@@ -103,14 +103,21 @@ def amend_yaml(yaml):
 
 
 def amend_joint_state_publisher(module):
-    """~zeros may be one dictionary, for joints of any name, as in later releases."""
+    """~zeros may be one dictionary, for joints of any name, as in later releases.
+
+    A robot that is not there is a line instead of a traceback.
+    """
     get_param = module.get_param
 
     @functools.wraps(get_param)
     def from_dictionary(name, value=None):
-        if not name.startswith("zeros/"):
-            return get_param(name, value)
-        return (get_param("zeros") or {}).get(name.removeprefix("zeros/"), value)
+        if name.startswith("zeros/"):
+            return (get_param("zeros") or {}).get(name.removeprefix("zeros/"), value)
+        found = get_param(name, value)
+        if found is None and name == "robot_description":
+            sys.exit(translated("joint_state_publisher: there is no robot_description; start the "
+                                "simulator, or the launch file that loads the robot, first"))
+        return found
 
     module.get_param = from_dictionary
 
