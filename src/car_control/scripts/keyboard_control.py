@@ -44,7 +44,7 @@ class KeyControl:
         speed, angle = command(keys, self.settings.speed, self.settings.max_steering_angle)
         if self.pace.due((speed, angle), time.monotonic()):
             self.publish(speed, angle)
-        return f"{speed:+.2f} m/s  {angle:+.2f} rad" if keys else "standing"
+        return f"{speed:+.2f} m/s  {angle:+.2f} rad" if keys else "the car stands"
 
     def publish(self, speed, angle):
         message = Twist()

@@ -38,7 +38,7 @@ class KeyboardTerminal(unittest.TestCase):
         self.shown = ""
         threading.Thread(target=self.read, daemon=True).start()
         wait_until(self.sent.subscriber.get_num_connections, "the node's publisher")
-        wait_until(lambda: "standing" in self.shown, "keys being read")
+        wait_until(lambda: "the car stands" in self.shown, "keys being read")
         self.sent.forget()
 
     def tearDown(self):
