@@ -1,6 +1,6 @@
 # Every command is a script in scripts/; run a script itself to get its own exit code.
-verbs = setup course race viewer drive lane track avoid navigate autorace mark deps build clean help \
-  test lint race-trials track-trials lane-trials navigation-trials localisation-trials bench-lanes bench fuzz chaos soak mutants deb
+verbs = setup course race viewer drive lane track avoid navigate autorace mark deps build report clean help \
+  test lint race-trials track-trials lane-trials navigation-trials localisation-trials bench-lanes bench fuzz chaos soak mutants check-releases deb
 .PHONY: $(verbs)
 .DEFAULT_GOAL = help
 
@@ -77,6 +77,9 @@ deps: ## install the Debian packages that a workspace depends on [WS=~/catkin_ws
 build: ## rebuild the workspace [CPP=1: with the lessons' C++ programs]
 	@scripts/setup.sh --build $(if $(filter-out 0 no false,$(CPP)),--cpp)
 
+report: ## write out/report.txt for a bug report: versions, this machine, the last logs, nothing personal
+	@scripts/report.sh
+
 clean: ## remove what was installed and built here (out/ stays, except out/test/)
 	@scripts/clean.sh
 
@@ -131,6 +134,9 @@ soak: ### run a course for hours with user activity, and look for leaks [HOURS=4
 
 mutants: ### mutation testing of the core: how many small code changes do its tests detect? [SAMPLE=1000] [SEED=1]
 	@scripts/mutants.sh $(if $(SAMPLE),--sample "$(SAMPLE)") $(if $(SEED),--seed "$(SEED)")
+
+check-releases: ### which of our Debian packages another release lacks, and which changed there [RELEASE=testing]
+	@scripts/check_releases.sh $(if $(RELEASE),"$(RELEASE)")
 
 deb: ### build a Debian package of everything, in out/
 	@scripts/deb.sh

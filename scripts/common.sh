@@ -16,6 +16,8 @@ fi
 say() { printf '%s\n' "$*"; }
 fail() { printf '%s: %s\n' "$self" "$1" >&2; exit "${failure_code:-1}"; }
 
+our_version() { sed -n 's/^__version__ = "\(.*\)".*/\1/p' "$root/src/sim/bullet_sim/src/bullet_sim/__init__.py"; }
+
 # `sudo make course` would leave root's files in a user's folder: continue as that user.
 if [ "$(id -u)" = 0 ] && [ -z "${stays_root:-}" ] && [ -n "${SUDO_USER:-}" ] && [ "$(stat -c %U "$root")" = "$SUDO_USER" ]; then
   exec sudo -u "$SUDO_USER" -H -- "$root/scripts/$(basename "$0")" "$@"

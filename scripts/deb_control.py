@@ -11,13 +11,15 @@ import hashlib
 import subprocess
 import sys
 import time
-import xml.etree.ElementTree as ET
 from email.utils import formatdate
 from importlib.metadata import Distribution
 from pathlib import Path
 
 from deb_stage import MODULES, ROOT, epoch, required, settle_times
 from package_lists import these_lists
+
+sys.path.insert(0, str(ROOT / "src/sim/bullet_sim/src"))
+from bullet_sim import __version__
 
 NAME = "ros-courses"
 MAINTAINER = "ros1-driving-courses <courses@example.org>"
@@ -71,13 +73,12 @@ def python_range(version: tuple[int, int] = sys.version_info[:2]) -> list[str]:
 
 
 def version(when: int) -> str:
-    """The lesson package's version, the commit's time and name: later ones count as newer."""
-    manifest = ET.parse(ROOT / "src/learning_topic/package.xml")
+    """Our version, the commit's time and name: later ones count as newer."""
     told = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty=.changed",
                            "--exclude=*"], capture_output=True, text=True, check=False)
     commit = f".{told.stdout.strip()}" if told.returncode == 0 else ""
     minute = time.strftime("%Y%m%d%H%M", time.gmtime(when))
-    return f"{manifest.findtext('version')}+{minute}{commit}"
+    return f"{__version__}+{minute}{commit}"
 
 
 def control(prefix: str, version: str, architecture: str, size_kib: int, packages: str) -> str:

@@ -31,6 +31,8 @@ case "${1:-}" in
     say $"make $verb has no option $names;""$(meant "${3%=}" "${options[@]}")"$" \`make\` alone lists the options of each command" ;;
   --no-switch) names=${*:2}; say $"$names: write 1 or 0, or leave it out" ;;
   *)
+    version=$(our_version)
+    echo $"ROS 1 driving courses, version $version"
     echo $"usage: make COMMAND [OPTION=VALUE ...]"
     list '##'
     echo $"For those who test or change this repository:"

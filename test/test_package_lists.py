@@ -1,7 +1,9 @@
 """dependencies/: the table, the lists that are written from it, and what setup says of machines."""
 
+import hashlib
 import subprocess
 import sys
+from email.utils import formatdate
 from pathlib import Path
 
 import pytest
@@ -142,3 +144,63 @@ def test_an_architecture_without_builds_is_one_line_with_what_is_missing(archite
     assert done.returncode == 1 and done.stderr.count("\n") == 1
     assert architecture in done.stderr and "Numba" in done.stderr
     assert " and ".join(TABLE.data["architectures"]) in done.stderr
+
+
+def mirror(folder: Path, release: str, versions: dict[str, str], provided: str = "any") -> None:
+    """Adds a release to a mirror, as apt reads it: for each architecture these packages."""
+    sums = []
+    for architecture in TABLE.data["architectures"]:
+        path = f"main/binary-{architecture}/Packages"
+        file = folder / "dists" / release / path
+        file.parent.mkdir(parents=True)
+        data = "".join(f"Package: {name}\nArchitecture: all\nVersion: {version}\n"
+                       f"Provides: {provided}\n\n" for name, version in versions.items()).encode()
+        file.write_bytes(data)
+        sums.append(f" {hashlib.sha256(data).hexdigest()} {len(data)} {path}\n")
+    (folder / "dists" / release / "Release").write_text(
+        f"Codename: {release}\nDate: {formatdate(usegmt=True)}\n"
+        f"Architectures: {' '.join(TABLE.data['architectures'])}\n"
+        f"Components: main\nSHA256:\n{''.join(sums)}")
+
+
+def check_releases(folder: Path, release: str) -> subprocess.CompletedProcess:
+    """What the command says of a release of that mirror."""
+    return subprocess.run(
+        [sys.executable, ROOT / "scripts/check_releases.py", release, "--source",
+         f"deb [trusted=yes] file:{folder} {{}} main"], capture_output=True, text=True, check=False)
+
+
+def test_a_release_is_compared_with_what_our_newest_takes(tmp_path):
+    newest = list(TABLE.data["releases"])[-1]
+    ours = {package.name: "1:2.9-1" for kind in DEBIAN
+            for packages in TABLE.sections(kind).values() for package in packages}
+    mirror(tmp_path, newest, ours | {"python3": "3.13.5-1"})
+    new = ours | {"python3": "3.14.0-1", "rosbash": "1:3.0-1", "ros-environment": "1:2.10~rc1-1"}
+    mirror(tmp_path, "next", {name: version for name, version in new.items()
+                              if name not in ("libx11-dev", "ros-core", "rviz", "graphviz")},
+           provided="graphviz")
+    done = check_releases(tmp_path, "next")
+    (why,) = [each.why for each in TABLE.sections("debian")["building"]
+              if each.name == "libx11-dev"]
+    (rviz,) = [each.why for each in TABLE.sections("debian")["testing"] if each.name == "rviz"]
+    assert done.stdout.splitlines() == [
+        f"next: missing: rviz ({rviz})", "next: changed: Python 3.13 -> 3.14",
+        "next: changed: rosbash 2 -> 3", f"next: missing: libx11-dev ({why}), arm64 alone"]
+    assert (done.returncode, done.stderr) == (1, "")
+    done = check_releases(tmp_path, newest)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == f"{newest} has all that our lists for {newest} take\n"
+
+
+def test_a_release_that_is_not_there_is_one_line(tmp_path):
+    mirror(tmp_path, list(TABLE.data["releases"])[-1], {"python3": "3.13.5-1"})
+    done = check_releases(tmp_path, "wrody")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("check_releases: wrody: ") and done.stderr.count("\n") == 1
+
+
+def test_ros_is_taken_in_parts_that_the_next_release_has_too():
+    """Debian 14 has no ros-core, which only depends on these."""
+    names = {package.name for packages in TABLE.sections("debian").values() for package in packages}
+    assert "ros-core" not in names
+    assert {"python3-rosmaster", "python3-roslaunch", "python3-rostopic", "rosout"} <= names

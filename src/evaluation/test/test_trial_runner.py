@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 
 import pytest
 
+from bullet_sim import __version__
 from evaluation.command_line import NOT_PASSED, NOT_RUN, PASSED
 from evaluation.report import cell, table
 from evaluation.trial import Case, Trial, from_json, run_trial
@@ -162,3 +163,11 @@ def test_cases_can_be_sent_to_another_process():
         cases = trial.cases(trial.parse([]))
         assert pickle.loads(pickle.dumps(cases)) == cases
         assert len({case.name for case in cases}) == len(cases)
+
+
+def test_the_program_and_its_report_say_the_version(tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        run_trial(Squares(), ["--version"])
+    assert capsys.readouterr().out == f"squares.py {__version__}\n"
+    run_trial(Squares(), ["--out", str(tmp_path)])
+    assert json.loads((tmp_path / "report.json").read_text())["version"] == __version__

@@ -12,7 +12,7 @@ HERE = Path(__file__).resolve().parent
 runpy.run_path(str(HERE / "src/bullet_sim/props.py"), run_name="__main__")
 setup(
     name="bullet_sim",
-    version="0.1.0",
+    version=runpy.run_path(str(HERE / "src/bullet_sim/__init__.py"))["__version__"],
     description="Gazebo's models, worlds, sensors and cameras on PyBullet, without ROS",
     long_description=(HERE / "README.md").read_text(encoding="utf-8"),
     long_description_content_type="text/markdown",

@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 from gazebo_ros.server import node_arguments
 
+from bullet_sim import __version__
+
 SCRIPTS = Path(__file__).resolve().parents[1] / "scripts"
 FAKE_NODE = """
 import os, signal, sys, time
@@ -127,6 +129,7 @@ def test_help_and_version(start, name, option):
     process = start(name, option)
     said, _ = process.communicate(timeout=60)
     assert process.returncode == 0 and name in said
+    assert "v" not in option or f" {__version__}" in said
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

@@ -13,6 +13,7 @@ from pathlib import Path
 from node_basics.ending import interruptible
 from racecar_description.track.errors import TrackError
 
+from bullet_sim import __version__
 from run_session.failure import RunError
 from trial_worlds.errors import WorldError
 
@@ -26,6 +27,7 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, package: str = "evaluation", **settings: object) -> None:
         super().__init__(**{"allow_abbrev": False, **settings})
+        self.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
         self._package = package  # to which the program belongs; empty: it is a script in scripts/
 
     def error(self, message: str) -> None:

@@ -12,14 +12,15 @@ from typing import Any
 from terminal_language import headings, translated
 from terminal_language.cells import width
 
+from bullet_sim import __version__
 from run_session.files import write_whole
 
 PAGE = "report.html"
 
 
 def write_json(values: dict, path: Path) -> None:
-    """Write values as JSON; on OSError, which names the file, the previous file stays intact."""
-    write_whole(path, (json.dumps(values, indent=1) + "\n").encode())
+    """Write our version and values as JSON; OSError names the file, whose old content stays."""
+    write_whole(path, (json.dumps({"version": __version__, **values}, indent=1) + "\n").encode())
 
 
 def write_page(out: Path, title: str, table: str, lines: Sequence[str],

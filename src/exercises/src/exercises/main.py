@@ -14,6 +14,7 @@ import rospkg
 from node_basics.ending import interruptible
 from terminal_language.wanted import wanted_language
 
+from bullet_sim import __version__
 from bullet_sim.errors import did_you_mean
 from exercises.catalogue import MODULES, Exercise, find_exercises
 from exercises.finding import CannotCheck, Finding, Mistake, TimeUp
@@ -46,6 +47,7 @@ def main(arguments: list[str] | None = None) -> int:
         prog="check_exercise", description=__doc__, epilog=EPILOG)
     parser.add_argument("name", nargs="?", help="of the exercise; without it: list all")
     parser.add_argument("file", nargs="?", type=Path, help="yours (default: the exercise's own)")
+    parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     options = parser.parse_args(arguments)
     try:
         known = find_exercises()

@@ -11,6 +11,8 @@ from background import wait_until
 from chromium import Browser
 from sensor_msgs.msg import LaserScan
 
+from bullet_sim import __version__
+
 LINK = "({ watch: (what, _, tell) => { window.told[what] = tell; return () => {}; }, call: null })"
 SCENE = {"background": None, "ambient": [1, 1, 1, 1], "sky": False, "lights": [], "links": []}
 HINT = "document.querySelector('#made .hint')"
@@ -24,6 +26,11 @@ class Parts(unittest.TestCase):
         cls.addClassCleanup(cls.browser.close)
         cls.page = cls.browser.open(url + "#topics")
         cls.page.wait_for("document.querySelectorAll('#tabs button').length >= 11")
+
+    def test_the_page_names_its_version(self):
+        self.assertEqual(self.page.evaluate("(({ textContent, title }) => [textContent, title])"
+                                            "(document.getElementById('version'))"),
+                         [f"v{__version__}", "version of these courses"])
 
     def imported(self, path, script):
         """The value of a script about `module`, a module of the page."""

@@ -55,6 +55,9 @@ function untilConnected() {
     // Started anew, with control:=true now or without it: what is shown was made for the other.
     if (known && about.control !== link.control) location.reload();
     link.control = about.control;
+    const version = document.getElementById("version");
+    version.textContent = `v${about.version}`;
+    version.title = t("version of these courses", "本课程的版本");
     known = true;
     resolve();
   }));

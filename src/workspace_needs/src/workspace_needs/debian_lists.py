@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-FIELDS = ("Package", "Source", "Section", "Depends", "Provides")
+FIELDS = ("Package", "Source", "Section", "Depends", "Provides", "Version")
 # Folders of a ROS package, below the system's share, lib, include ...
 ROOM = re.compile(
     r"usr/(?:lib/python3/dist-packages|(?:share|lib)(?:/x86_64-linux-gnu)?/cmake"
@@ -26,6 +26,7 @@ class Binary:
     source: str
     section: str
     depends: frozenset[str]
+    version: str
 
 
 def read_packages(lines: Iterable[str]) -> dict[str, Binary]:
@@ -34,7 +35,7 @@ def read_packages(lines: Iterable[str]) -> dict[str, Binary]:
     for fields in _paragraphs(lines):
         name = fields["Package"]
         binary = Binary(name, fields.get("Source", name).split()[0], fields.get("Section", ""),
-                        frozenset(_names(fields.get("Depends", ""))))
+                        frozenset(_names(fields.get("Depends", ""))), fields.get("Version", ""))
         found[name] = binary
         for provided in _names(fields.get("Provides", "")):
             found.setdefault(provided, binary)

@@ -9,6 +9,8 @@ import sys
 import time
 from urllib.parse import urlsplit
 
+from bullet_sim import __version__
+
 HOW_TO_LOOK = (
     "No 3D window here. See the world in the browser: roslaunch sim_viewer viewer.launch, "
     "then open http://127.0.0.1:8080/ (viewer:=true starts both at once). On a screen also: "
@@ -32,7 +34,8 @@ def main() -> None:
     parent = os.getppid()  # before anybody is told anything
     ctypes.CDLL(None).prctl(PR_SET_NAME, b"gzclient")  # for killall and pgrep
     parser = argparse.ArgumentParser(prog="gzclient", description=HOW_TO_LOOK)
-    parser.add_argument("-v", "--version", action="version", version="gzclient: no window")
+    parser.add_argument("-v", "--version", action="version",
+                        version=f"gzclient {__version__}: no window")
     parser.parse_known_args([word for word in sys.argv[1:] if ":=" not in word])
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: sys.exit(0))

@@ -6,6 +6,8 @@ import shlex
 import sys
 from pathlib import Path
 
+from bullet_sim import __version__
+
 ABOUT = "PyBullet behind Gazebo 11's ROS interface"
 SWITCHES_WITHOUT_EFFECT = (
     ("-r", "--record"), ("--record_resources",), ("--lockstep",), ("--minimal_comms",))
@@ -19,7 +21,8 @@ def parser(program: str) -> argparse.ArgumentParser:
     result = argparse.ArgumentParser(
         prog=program, description=f"The simulator: {ABOUT}.", allow_abbrev=False)
     result.add_argument("world", nargs="?", default="worlds/empty.world", help="world file")
-    result.add_argument("-v", "--version", action="version", version=f"{program}: {ABOUT}")
+    result.add_argument("-v", "--version", action="version",
+                        version=f"{program} {__version__}: {ABOUT}")
     result.add_argument("--verbose", action="store_true", help="log more")
     result.add_argument("-u", "--pause", action="store_true", help="start paused")
     result.add_argument("-e", "--physics", default="ode", help="physics engine")

@@ -14,6 +14,7 @@ import rospy
 from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
+from bullet_sim import __version__
 from sim_viewer.access import Access
 from sim_viewer.hub import Hub
 from sim_viewer.options import Options
@@ -28,7 +29,8 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 def facts(options: Options) -> dict[str, Any]:
     """Which node serves the page for which master, and options that a person may miss."""
     return {"node": rospy.get_name(), "master": rosgraph.get_master_uri(),
-            "control": options.control, "rviz": options.rviz, "address": options.address}
+            "control": options.control, "rviz": options.rviz, "address": options.address,
+            "version": __version__}
 
 
 @operation("about")

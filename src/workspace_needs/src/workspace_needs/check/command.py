@@ -7,6 +7,7 @@ from pathlib import Path
 
 import rospkg
 
+from bullet_sim import __version__
 from bullet_sim.errors import did_you_mean
 from bullet_sim_ros.unsourced import unsourced
 from workspace_needs.check.contents import Check
@@ -41,6 +42,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--run-commands", action="store_true",
                         help="run the commands of a launch file's parameters; without it xacro "
                              "and cat are done here, and others are named")
+    parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     args = parser.parse_args(argv)
     if args.launch and ":=" in args.launch:
         args.arguments.insert(0, args.launch)
