@@ -64,8 +64,8 @@ impersonal() {
     for my $name (@homes) { s/\Q$name\E(?![\w-])/~/g }
     for my $name (@hosts) { s/(?<![A-Za-z0-9])\Q$name\E(?![A-Za-z0-9])/host/gi }
     for my $name (@users) { s/(?<![A-Za-z0-9])\Q$name\E(?![A-Za-z0-9])/user/gi }
-    s{/home/[^/\s:"\x27]+}{/home/user}g;
-    s{([/\\]Users[/\\])(?:[^/\\:\n]+(?=[/\\])|[^/\\\s:]+)}{$1user}g;
+    s{/home/[^/\s:"\x27]+}{~user}g;
+    s{[/\\]Users[/\\](?:[^/\\:\n]+(?=[/\\])|[^/\\\s:]+)}{~user}g;
     s/(?<![\w.=-])(?!127\.|0\.0\.0\.0)\d{1,3}(?:\.\d{1,3}){3}(?![\w.])/address/g;
     s/\[(?:[0-9a-f]*:){3,}[0-9a-f]*\]/[address]/gi;
     s/^(.{400}).+/$1 .../'

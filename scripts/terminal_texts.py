@@ -42,8 +42,9 @@ CONTEXT = "\4"  # gettext's, between a msgctxt and its msgid
 # Of Python's argparse, which has no Chinese.
 OF_ARGPARSE = (
     "usage: {0}", "positional arguments:", "options:", "show this help message and exit",
-    "{0}: error: {1}", "the following arguments are required: {0}", "unrecognized arguments: {0}",
-    "argument {0}: {1}", "invalid choice: {0} (choose from {1})", "invalid {0} value: {1}",
+    "show program's version number and exit", "{0}: error: {1}", "argument {0}: {1}",
+    "the following arguments are required: {0}", "unrecognized arguments: {0}",
+    "invalid choice: {0} (choose from {1})", "invalid {0} value: {1}",
     "expected one argument", "expected at least one argument", "expected {0} arguments",
     "not allowed with argument {0}", "one of the arguments {0} is required")
 # Of the system, by the error numbers that a learner meets.
