@@ -20,7 +20,7 @@ from std_msgs.msg import Bool, Float64
 
 WAKE = 0.02  # s, wall: how often to check for a sender's end, whatever the clock does
 STILL_CLOCK = 0.1  # s, wall, between repeated commands while simulated time is paused
-UNHEARD_TIME = 10.0  # s, wall, that the controllers may take to come
+UNHEARD_TIME = 20.0  # s, wall, that the controllers may take to come
 FLUSH_TIME = 0.1  # s, wall: rospy's threads need this to send before the process ends
 
 

@@ -49,10 +49,12 @@ def asked(monkeypatch):
     monkeypatch.setattr(waiting, "GRACE", 0.0)
     monkeypatch.setattr(waiting, "tell", lambda *what: found.append(what))
 
+    monkeypatch.setattr(waiting, "after_grace", lambda *_: None)
+
     class Subscriber:
         def __init__(self, kind, closed):
             self.type, self.closed, self.resolved_name = kind, closed, TOPIC
-            self.connections = [SimpleNamespace(stat_num_msg=1)]
+            self.receive_callback = None
 
         def remove_connection(self, connection):
             connection.removed = True
@@ -133,20 +135,14 @@ def master(monkeypatch):
     return state
 
 
-def silent(name, kind=IMAGE, messages=(), closed=False):
-    connections = [SimpleNamespace(stat_num_msg=count) for count in messages]
-    waiting.tell_of_silence(SimpleNamespace(resolved_name=name, type=kind, closed=closed,
-                                            connections=connections))
-
-
-def test_why_no_image_comes(said, master, monkeypatch):
-    monkeypatch.setattr(waiting, "WATCH_THEMSELVES", set())
-    silent("/camera/image_raw")
-    silent("/base_scan", "sensor_msgs/CompressedImage")
-    silent(TOPIC, messages=(0, 0))
+def test_why_no_image_comes(said, master):
+    waiting.tell_of_silence("/camera/image_raw", IMAGE)
+    waiting.tell_of_silence("/base_scan", "sensor_msgs/CompressedImage")
+    waiting.tell_of_silence("/follower/picture", IMAGE)  # no simulator's: perhaps it has none yet
+    waiting.tell_of_silence(TOPIC, IMAGE)
     master.topics = {"/follower/picture": SIMULATED["/follower/picture"]}
-    silent("/camera/image_raw")
-    silent(TOPIC)  # once for all topics
+    waiting.tell_of_silence("/camera/image_raw", IMAGE)
+    waiting.tell_of_silence(TOPIC, IMAGE)  # once for all topics
     assert said == [
         "Nothing on /camera/image_raw yet: nobody publishes it. If /camera/rgb/image_raw is meant, "
         "end this program and start it with /camera/image_raw:=/camera/rgb/image_raw.",
@@ -154,13 +150,6 @@ def test_why_no_image_comes(said, master, monkeypatch):
         f"Nothing on {TOPIC} yet, though it is published: is the simulation paused?",
         "Nothing on /camera/image_raw yet: nobody publishes it, and no simulator runs. Start the "
         "course in another terminal; this program then goes on by itself."]
-
-
-@pytest.mark.parametrize("other", [{"messages": (0, 1)}, {"closed": True}])
-def test_a_topic_that_was_heard_or_is_closed_is_not_missed(said, master, other, monkeypatch):
-    monkeypatch.setattr(waiting, "WATCH_THEMSELVES", set())
-    silent("/camera/image_raw", **other)
-    assert said == []
 
 
 def test_a_service_that_nobody_offers(said, master):
@@ -193,21 +182,53 @@ def test_nodes_of_a_launch_wait_longer(monkeypatch):
     assert begun == [waiting.GRACE, waiting.LAUNCH_GRACE]
 
 
-def test_subscribing_in_a_loop_starts_one_timer(monkeypatch):
+@pytest.fixture
+def subscribe(monkeypatch):
+    """Makes a subscriber; `looks` are the timers that it starts, `told` the silent topics."""
     class Subscriber:
+        closed = False
+
         def __init__(self, name, kind):
             self.resolved_name, self.type = name, kind
+
+        def receive_callback(self, *what):
+            self.received = what
 
         def remove_connection(self, connection):
             """As rospy's."""
 
-    begun = []
-    monkeypatch.setattr(waiting, "later", lambda _, act, which: begun.append(which.resolved_name))
+    def make(name, kind="sensor_msgs/LaserScan"):
+        return Subscriber(name, kind)
+
+    make.looks, make.told = [], []
+    monkeypatch.setattr(waiting, "WATCH_THEMSELVES", set())
+    monkeypatch.setattr(waiting, "later", lambda _, look, name: make.looks.append(
+        lambda: look(name)))
+    monkeypatch.setattr(waiting, "tell_of_silence", lambda *what: make.told.append(what))
     waiting.amend_topics(SimpleNamespace(_SubscriberImpl=Subscriber))
-    for name in ("/scan", "/scan", "/scan_2"):
-        Subscriber(name, "sensor_msgs/LaserScan")
-    Subscriber("/chatter", "std_msgs/String")
-    assert begun == ["/scan", "/scan_2"]
+    return make
+
+
+def test_a_topic_that_was_heard_is_not_missed(subscribe):
+    heard = subscribe("/scan")
+    heard.receive_callback("message", "connection")
+    heard.closed = True  # its publisher has ended, too
+    subscribe("/scan")
+    subscribe("/chatter", "std_msgs/String")
+    assert heard.received == ("message", "connection") and len(subscribe.looks) == 1
+    subscribe.looks[0]()
+    assert subscribe.told == []
+
+
+def test_waiting_in_a_loop_starts_one_timer_and_is_told(subscribe):
+    for _ in range(3):
+        newest = subscribe("/scan")
+    newest.closed = True  # between two rounds
+    subscribe.looks[0]()
+    assert subscribe.told == []
+    subscribe("/scan")
+    subscribe.looks[1]()
+    assert len(subscribe.looks) == 2 and subscribe.told == [("/scan", "sensor_msgs/LaserScan")]
 
 
 def node(words, **environment):
@@ -229,6 +250,23 @@ def test_without_a_master_a_line_and_ctrl_c_ends_it_at_once(gone, language, line
     waits.send_signal(signal.SIGINT)
     assert waits.communicate(timeout=3.0) == ("", "")  # rospy alone takes 5 s
     assert waits.returncode == 128 + signal.SIGINT
+
+
+def test_a_wrong_address_of_the_master_is_said():
+    waits = node("import rospy; rospy.init_node('lesson')", ROS_MASTER_URI="localhost:11311")
+    said = waits.stderr.readline()
+    waits.kill()
+    waits.communicate()
+    assert said == "ROS_MASTER_URI is localhost:11311, and must be as http://localhost:11311\n"
+
+
+def test_at_pythons_prompt_ctrl_c_is_the_prompts(gone):
+    typed = ("import rospy, sys\nsys.ps1 = '>>> '\ntry: rospy.init_node('a')\n"
+             "except KeyboardInterrupt: print('still here')\n")
+    waits = node(typed, ROS_MASTER_URI=gone)
+    assert gone in waits.stderr.readline()
+    waits.send_signal(signal.SIGINT)
+    assert waits.communicate(timeout=LIMIT)[0] == "still here\n"
 
 
 def test_every_python_node_has_it():

@@ -5,6 +5,7 @@ For a ROS master, the first image, scan or odometry, a service, a simulator that
 
 import contextlib
 import difflib
+import re
 import signal
 import socket
 import sys
@@ -22,10 +23,12 @@ SIMULATOR = "gazebo"  # node name, in any namespace
 GRACE = 5.0  # s, wall: a node that ends together with its simulator says nothing
 OF_A_LAUNCH = "__log:="  # an argument of its nodes, which start before what they wait for
 LAUNCH_GRACE = 20.0  # s, wall
+IS_URI = re.compile(r"http://[^/:]+:\d{1,5}/?")
 ANSWER_TIME = 1.0  # s, wall
 LOOK_AGAIN = 0.2  # s, wall
 NO_MASTER = ("No ROS master at %s. Type roscore (or start the course) in another terminal; this "
              "program then goes on by itself.")
+BAD_URI = "ROS_MASTER_URI is %s, and must be as http://localhost:11311"
 NO_SIMULATOR = ("Nothing on %s yet: nobody publishes it, and no simulator runs. Start the course "
                 "in another terminal; this program then goes on by itself.")
 OTHER_TOPIC = ("Nothing on %s yet: nobody publishes it. If %s is meant, end this program and start "
@@ -39,6 +42,7 @@ AGAIN = ("The simulator has ended: no more messages on %s. When the course is st
          "program goes on by itself.")
 ALL_AGAIN = ("The simulator and the ROS master have ended: no more messages on %s. Press Ctrl-C; "
              "start the course, then this program again.")
+HEARD = object()
 SAID = set()  # forms of lines
 
 
@@ -53,8 +57,8 @@ def amend_client(client):
         try:
             wait_for_master()
         except KeyboardInterrupt:
-            if options.get("disable_signals"):
-                raise  # for the program, as rospy would
+            if options.get("disable_signals") or hasattr(sys, "ps1"):
+                raise  # for the program, or the prompt that it was typed at
             sys.exit(128 + signal.SIGINT)
         init(*words, **options)
 
@@ -68,14 +72,14 @@ def wait_for_master():
     import rospy
 
     uri = rosgraph.get_master_uri()
-    try:
-        if listens(uri):
-            return
-    except ValueError:  # rospy says what is wrong with it
+    if rospy.core.is_initialized() or not uri:  # rospy says what is wrong with an empty one
         return
-    print(translated(NO_MASTER % uri), file=sys.stderr, flush=True)
-    while not listens(uri) and not rospy.is_shutdown():
-        time.sleep(LOOK_AGAIN)
+    if not IS_URI.fullmatch(uri):
+        print(translated(BAD_URI % uri), file=sys.stderr, flush=True)
+    elif not listens(uri):
+        print(translated(NO_MASTER % uri), file=sys.stderr, flush=True)
+        while not listens(uri) and not rospy.is_shutdown():
+            time.sleep(LOOK_AGAIN)
 
 
 def amend_services(services):
@@ -97,14 +101,32 @@ def amend_services(services):
 
 def amend_topics(topics):
     """Watch the connections of this process's subscribers; `topics` is the module rospy.topics."""
-    kind, told, awaited = topics._SubscriberImpl, set(), set()
+    kind, told, awaited = topics._SubscriberImpl, set(), {}
     begin, remove = kind.__init__, kind.remove_connection
 
     def __init__(subscriber, *words, **options):
         begin(subscriber, *words, **options)
-        if subscriber.type in SEEN and subscriber.resolved_name not in awaited:
-            awaited.add(subscriber.resolved_name)  # wait_for_message in a loop subscribes often
-            after_grace(tell_of_silence, subscriber)
+        name = subscriber.resolved_name
+        if subscriber.type not in SEEN or awaited.get(name, subscriber) is HEARD:
+            return
+        if name not in awaited:
+            after_grace(look, name)
+        awaited[name] = subscriber  # the newest: wait_for_message in a loop subscribes often
+        receive = subscriber.receive_callback
+
+        def first(*what):
+            awaited[name] = HEARD
+            receive(*what)
+
+        subscriber.receive_callback = first
+
+    def look(name):
+        if awaited[name] is HEARD:
+            return
+        if awaited[name].closed:
+            del awaited[name]
+        elif not says_it_itself():
+            tell_of_silence(name, awaited[name].type)
 
     def remove_connection(subscriber, connection):
         remove(subscriber, connection)
@@ -138,19 +160,17 @@ def later(seconds, act, *words):
     return timer
 
 
-def tell_of_silence(subscriber):
-    """Log why no message has come, if none has."""
-    name = subscriber.resolved_name
-    if (subscriber.closed or says_it_itself()
-            or any(each.stat_num_msg for each in subscriber.connections)):
-        return
+def tell_of_silence(name, kind):
+    """Log why no message of this type has come on a topic."""
     publishers = dict(asked("getSystemState")[0])
     by_simulators = {topic for topic, nodes in publishers.items()
                      if SIMULATOR in (node.rpartition("/")[2] for node in nodes)}
-    alike = by_simulators & {topic for topic, kind in asked("getPublishedTopics", "")
-                             if kind == subscriber.type}
-    if name in publishers:
+    alike = by_simulators & {topic for topic, its_kind in asked("getPublishedTopics", "")
+                             if its_kind == kind}
+    if name in by_simulators:
         tell_once(STILL, name)
+    elif name in publishers:  # by a driver, which knows when it has something
+        return
     elif alike:
         meant = difflib.get_close_matches(name, alike, 1, 0.0)[0]
         tell_once(OTHER_TOPIC, name, meant, name, meant)
