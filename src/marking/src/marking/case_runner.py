@@ -90,7 +90,8 @@ def write_report(folder: Path, case: CaseFile, drive: LapScorer, violations: Seq
         "drive_sha256": fingerprint(drive),
     }
     if drive.samples:
-        picture = path_picture(load_track_file(Path(case.track)), drive, report["outcome"],
+        picture = path_picture(load_track_file(Path(case.track)), drive,
+                               case.driven().line_colour, report["outcome"],
                                next(iter([*violations, fault or why])))
         write_png(folder / PATH_PICTURE, picture)
     write_json(report, folder / REPORT)
