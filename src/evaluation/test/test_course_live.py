@@ -37,7 +37,7 @@ def test_a_follower_closes_its_lap_near_the_line(tmp_path):
     assert report["laps_closed"] == 1
     assert report["rms_lateral_m"] <= 0.02
     assert report["distance_m"] > 9.0
-    for name in ("path.png", "run.mp4"):
+    for name in ("path.png", "run.mp4", "run.html"):
         assert (tmp_path / "out" / name).stat().st_size > 10_000
 
 

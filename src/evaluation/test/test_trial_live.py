@@ -16,7 +16,7 @@ class FakeDrive(live.LiveDrive):
     program, writes = "drive", ("report.json",)
 
     def __init__(self, out):
-        super().__init__(Namespace(out=out))
+        super().__init__(Namespace(out=out, video=False))
         self.reports = []
 
     def add_options(self, parser): ...

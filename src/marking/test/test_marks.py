@@ -9,6 +9,8 @@ from marking.marks import Mark, by_student, mean, points_of, write_marks, write_
 from marking.rules import Points, load_rules
 from marking.submissions import file_name, one_line
 
+from evaluation.run_page import RUN_PAGE
+
 EVIL = "<script>alert(1)</script>"
 
 
@@ -17,6 +19,7 @@ def write(tmp_path, kind=Kind.USER):
     folder.mkdir(parents=True)
     (folder / OUTPUT).write_bytes(f"printed {EVIL} \xff".encode("latin-1"))
     (folder / PATH_PICTURE).write_bytes(b"png")
+    (folder / RUN_PAGE).write_text("<!doctype html>")
     marks = by_student([
         Mark("b/0-1", "=cmd()", "track0-seed1", "fault", 0.0, (f"100 points: {EVIL}",), ""),
         Mark("a/0-1", "张伟", "track0-seed1", "closed", 90.5, ("9.5 points: slow",),
@@ -48,7 +51,9 @@ def test_pages_show_what_was_printed_and_run_none_of_it(tmp_path):
     page = (tmp_path / "students" / "张伟" / "index.html").read_text()
     assert "printed &lt;script&gt;" in page
     assert 'src="track0-seed1.png"' in page
-    assert (tmp_path / "students" / "张伟" / "track0-seed1.png").exists()
+    assert 'href="track0-seed1.html"' in page
+    for ending in ("png", "html"):
+        assert (tmp_path / "students" / "张伟" / f"track0-seed1.{ending}").exists()
     for each in tmp_path.rglob("*.html"):
         assert EVIL not in each.read_text()
 

@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 from racecar_description.track.closed_line import build_track
 from racecar_description.track.track_file import TrackFile, load_track_file
+from sim_viewer.replay_page import Curve
 
 from evaluation.command_line import LARGEST_SEED, Parser, number, one_of
 from evaluation.film import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, CameraFilm, side_by_side
@@ -30,6 +31,7 @@ from evaluation.picture import (
     write_png,
 )
 from evaluation.report import cell, table, write_json
+from evaluation.run_page import RUN_PAGE
 from run_session.course_file import CourseFile, drivers, load_course
 from run_session.failure import RunError
 from run_session.observer import Fingerprints
@@ -100,7 +102,7 @@ def _read(path: Path) -> dict:
     return values if isinstance(values, dict) else {}
 
 
-PLAN_PX = 520
+PLAN_PX, CAR_PX = 520, 27  # width of the map, length of the car's arrow
 MASK_LOW, MASK_HIGH = (20, 43, 46), (90, 255, 255)  # HSV, the lessons' bounds for yellow
 SEEN, FOUND = "#ff3cff", "#ff0000"  # round the mask's pixels, and where lesson 05 finds the line
 
@@ -137,7 +139,7 @@ class CourseFilm(CameraFilm):
             self._drawn = len(samples) - 1
         plan = self._floor.copy()
         if samples:
-            plan.arrow((samples[-1].x, samples[-1].y, samples[-1].yaw), 0.2, CAR)
+            plan.arrow((samples[-1].x, samples[-1].y, samples[-1].yaw), CAR_PX / plan.px_per_m, CAR)
         return plan.image
 
 
@@ -172,7 +174,7 @@ class CourseRun(CarDrive):
     does = "Drive a follower round the course without a screen, score it, write a report."
     ends = "0 laps closed, 1 left the course or stalled"
     usual_out = "out/ and the course's name"
-    writes = ("path.png", "run.mp4", "report.json")
+    writes = ("path.png", "run.mp4", RUN_PAGE, "report.json")
 
     @classmethod
     def add_options(cls, parser: Parser) -> None:
@@ -258,6 +260,10 @@ class CourseRun(CarDrive):
             "fast": self.options.fast, "seed": self.options.seed,
             "camera_width_px": width, "camera_height_px": height,
             **({"sensor_sha256": self.sensor_sums} if self.sensor_sums else {})}
+
+    def curves(self) -> list[Curve]:
+        times = [sample.time for sample in self.drive.samples]
+        return [Curve(("beside the line", "偏离线"), "m", times, self.drive.laterals)]
 
     def write(self, report: dict) -> list[str]:
         picture = path_picture(self.track_file, self.drive, self.course.line_colour,

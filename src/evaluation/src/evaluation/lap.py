@@ -128,6 +128,7 @@ class LapScorer:
     laps: list[Lap] = field(default_factory=list)
     samples: list[Sample] = field(default_factory=list)
     lap_numbers: list[int] = field(default_factory=list)  # of each sample, from 0
+    laterals: list[float] = field(default_factory=list)  # m, of each sample
     lateral: float = 0.0  # m, of the latest sample; positive to the left of the line
     total: _Tally = field(default_factory=_Tally)
     _lap: _Tally = field(default_factory=_Tally)
@@ -171,6 +172,7 @@ class LapScorer:
             return self.verdict
         self.samples.append(sample)
         self.lap_numbers.append(len(self.laps))
+        self.laterals.append(nearest.lateral)
         return self.verdict
 
     def _begin(self, sample: Sample, s: float) -> None:

@@ -10,11 +10,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
+import rosgraph
 from node_basics.ending import interruptible
+from sim_viewer.replay_page import Curve
+from terminal_language import translated
 
 from evaluation.command_line import NOT_PASSED, PASSED, Parser, run_program
 from evaluation.film import FilmFile
 from evaluation.lap import LapScorer, Sample, fingerprint
+from evaluation.run_page import PARAMETER, RECORDING, RUN_PAGE, write_run_page
 from run_session.course_file import CourseFile
 from run_session.failure import RunError
 from run_session.launch import Launched
@@ -53,6 +57,7 @@ class LiveDrive(ABC):
         self.options, self.out = options, options.out
         self.progress = StatusLine()
         self.film: FilmFile | None = None
+        self.summary = ""  # of the report, for people
 
     # --- options
 
@@ -75,7 +80,7 @@ class LiveDrive(ABC):
         add = parser.add_argument
         add("--out", type=Path, metavar="DIR",
             help=f"where {', '.join(cls.writes)} and log/ go ({cls.usual_out})")
-        add("--no-video", dest="video", action="store_false", help="write no run.mp4")
+        add("--no-video", dest="video", action="store_false", help="write no run.mp4, no run.html")
         add("--startup-timeout", type=float, default=STARTUP_TIMEOUT, metavar="S",
             help=f"wall seconds for what is started to be there ({STARTUP_TIMEOUT:g})")
         add("--stuck-timeout", type=float, default=STUCK_TIMEOUT, metavar="S",
@@ -108,6 +113,10 @@ class LiveDrive(ABC):
     def write(self, report: dict) -> list[str]:
         """Write pictures and report.json; returns the summary lines."""
 
+    def curves(self) -> list[Curve]:
+        """What RUN_PAGE shows besides the speed."""
+        return []
+
 
 def run_program_of(kind: type[LiveDrive], arguments: Sequence[str]) -> int:
     """Run a drive with this command line; returns the exit code."""
@@ -124,6 +133,9 @@ def run_live(drive: LiveDrive) -> int:
             try:
                 drive.progress.status("starting roscore")
                 launched.start_roscore()
+                if drive.options.video:
+                    rosgraph.Master(f"/{drive.program}", launched.master_uri).setParam(
+                        PARAMETER, str(drive.out / LOG / RECORDING))
                 if why := launched.why_not_callers:
                     drive.progress.say(why[0] % why[1:])
                 drive.progress.say(
@@ -161,7 +173,8 @@ def _report(drive: LiveDrive, outcome: Outcome) -> dict | None:
     if found is None:
         return None
     found |= {"film": None, "versions": versions(Path(__file__).parent, log)}
-    drive.progress.say("\n" + "\n".join(drive.write(found)))
+    drive.summary = "\n".join(drive.write(found))
+    drive.progress.say(f"\n{drive.summary}")
     return found
 
 
@@ -174,6 +187,12 @@ def _finish_film(drive: LiveDrive, found: dict | None) -> None:
         return
     if drive.film and drive.film.codec:
         drive.write(found | {"film": drive.film.codec})
+    if drive.options.video:
+        write_run_page(
+            drive.out / LOG / RECORDING, drive.out / RUN_PAGE,
+            f"{drive.driver or drive.program}: {translated(found['outcome'])}", drive.summary,
+            drive.out / "run.mp4",
+            [drive.out / name for name in drive.writes if name.endswith(".png")], drive.curves())
     here = Path.cwd()
     made = [drive.out / name for name in drive.writes if (drive.out / name).exists()]
     shown = [str(path.relative_to(here) if path.is_relative_to(here) else path) for path in made]

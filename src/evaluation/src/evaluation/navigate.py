@@ -15,6 +15,7 @@ from evaluation.navigate_pictures import Film, map_picture
 from evaluation.navigate_score import Result, lines, reached, summarize
 from evaluation.picture import write_png
 from evaluation.report import cell, write_json
+from evaluation.run_page import RUN_PAGE
 from map_server.errors import MapFileError
 from map_server.map_files import read_map
 from run_session.failure import RunError
@@ -32,8 +33,8 @@ class NavigationRun(LiveDrive):
     usual_out = "out/navigate"
     vehicle = "robot"
     logs = "*simulator.log"
-    writes = ("map.png", "run.mp4", "report.json", "map.pgm", "map.yaml", "map.json")
-    stay = writes[3:]
+    writes = ("map.png", "run.mp4", RUN_PAGE, "report.json", "map.pgm", "map.yaml", "map.json")
+    stay = writes[4:]
 
     @classmethod
     def add_options(cls, parser: Parser) -> None:

@@ -152,6 +152,7 @@ def _fixed(points_px: np.ndarray) -> np.ndarray:
 
 
 DPI, WIDTH, SIDE, HEADER, FOOT = 100, 14.0, 0.5, 1.25, 0.45  # px an inch; inches
+ARROW = 0.055  # the length of the car's arrow for one of the course's width
 PANEL_DPI, PANEL = 110, (6.5, 3.4)  # of charts: px an inch; inches
 
 
@@ -225,12 +226,12 @@ def path_picture(track_file: TrackFile, drive: LapScorer, line_colour: str, titl
         axes.plot(*points.T, color=colour, label=text,
                   linewidth=max(1.5, track_file.line_width * points_a_metre))
     axes.plot(*start_mark(yellow.pose(0.0)).T, color=START, linewidth=3, label="start")
-    _draw_laps(axes, drive)
+    _draw_laps(axes, drive, ARROW * np.ptp(everything[:, 0]))
     legend(axes)
     return pixels(figure)
 
 
-def _draw_laps(axes: Axes, drive: LapScorer) -> None:
+def _draw_laps(axes: Axes, drive: LapScorer, arrow_length: float) -> None:
     """Draw all laps; they overlap, so earlier ones are wider, to remain visible."""
     if not drive.samples:
         return
@@ -245,7 +246,7 @@ def _draw_laps(axes: Axes, drive: LapScorer) -> None:
         axes.plot([], [], color=FAINT,
                   label=f"laps {len(LAPS) + 1} to {numbers[-1] + 1}: the same colours again")
     last = drive.samples[-1]
-    draw_arrow(axes, (last.x, last.y, last.yaw), 0.2, CAR, "car at the end")
+    draw_arrow(axes, (last.x, last.y, last.yaw), arrow_length, CAR, "car at the end")
 
 
 def _lap_figures(drive: LapScorer, number: int) -> str:

@@ -11,6 +11,7 @@ from html import escape
 from pathlib import Path
 from urllib.parse import quote
 
+from evaluation.run_page import RUN_PAGE
 from marking.bubblewrap import Kind
 from marking.case_files import FILM, OUTPUT, PATH_PICTURE
 from marking.rules import Points, Rules
@@ -119,7 +120,8 @@ def write_student_pages(marks: Mapping[str, Sequence[Mark]], rules: Rules, out: 
         folder.mkdir(parents=True, exist_ok=True)
         total = mean([mark.points for mark in rows])
         for mark in rows:
-            for made, name in ((PATH_PICTURE, _picture(mark)), (FILM, _film(mark))):
+            for made, name in ((PATH_PICTURE, _picture(mark)), (FILM, _film(mark)),
+                               (RUN_PAGE, _replay(mark))):
                 if mark.folder and (out / mark.folder / made).exists():
                     shutil.copyfile(out / mark.folder / made, folder / name)
         parts = "".join(_case_part(mark, out, folder) for mark in rows)
@@ -135,15 +137,21 @@ def _film(mark: Mark) -> str:
     return f"{mark.case}.mp4"
 
 
+def _replay(mark: Mark) -> str:
+    return f"{mark.case}.html"
+
+
 def _case_part(mark: Mark, out: Path, folder: Path) -> str:
     lost = f"<p>Why points were lost:</p>{_list(mark.lost)}" if mark.lost else ""
     picture = f'<p><img src="{_picture(mark)}" alt="the path"></p>' if (
         folder / _picture(mark)).exists() else ""
     film = f'<p><video src="{_film(mark)}" controls></video></p>' if (
         folder / _film(mark)).exists() else ""
+    replay = f'<p><a href="{_replay(mark)}">replay in 3D</a></p>' if (
+        folder / _replay(mark)).exists() else ""
     outcome = "laps closed" if mark.outcome == "closed" else mark.outcome
     return (f"<h2>{escape(mark.case)}: {mark.points:g} points, {escape(outcome)}</h2>"
-            f"{lost}{_line(mark.note)}{picture}{film}{_output(mark, out)}")
+            f"{lost}{_line(mark.note)}{picture}{film}{replay}{_output(mark, out)}")
 
 
 def _output(mark: Mark, out: Path) -> str:

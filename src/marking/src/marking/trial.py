@@ -18,9 +18,10 @@ from racecar_description.track.closed_line import load_track
 from evaluation.command_line import Parser
 from evaluation.lap_trial import MODEL_PATH
 from evaluation.report import table
+from evaluation.run_page import RECORDING, RUN_PAGE, write_run_page
 from evaluation.trial import Case, Trial
 from marking.bubblewrap import Kind, available, hidden, namespace, shown
-from marking.case_files import COURSES, CaseFile, Scene, make_scene
+from marking.case_files import COURSES, FILM, PATH_PICTURE, CaseFile, Scene, make_scene
 from marking.case_runner import BY_TIME
 from marking.course_startup import STARTUP_LIMIT
 from marking.marks import (
@@ -158,8 +159,11 @@ class MarkingTrial(Trial):
         folder = _folder(out, case)
         shutil.rmtree(folder / SUBMISSION, ignore_errors=True)  # the original is kept
         points, lost = points_of(report, self.options.rules.points)
-        return Mark(case.name, case.student, _case_name(case), report["outcome"], points,
-                    tuple(map(one_line, lost)),
+        lost = tuple(map(one_line, lost))
+        write_run_page(folder / RECORDING, folder / RUN_PAGE, case.name,
+                       "\n".join([f"{points:g} points, {report['outcome']}", *lost]),
+                       folder / FILM, [folder / PATH_PICTURE])
+        return Mark(case.name, case.student, _case_name(case), report["outcome"], points, lost,
                     str(folder.relative_to(out)) if record.driven else "",
                     report.get("note", ""), record.submission_sha256)
 

@@ -52,7 +52,7 @@ class Tab {
       button("Robot", "机器人", () => this._lookAtRobot()),
       button("Overview", "全景", () => this._overview(false)),
       button("From above", "俯视", () => this._overview(true))), this._hint);
-    this._links = new Links(() => this._look());
+    this._links = new Links(() => this._look(), link.address);
     this._shadows = new GroundShadows();
     try {
       this._viewport = new Viewport(this._box,

@@ -46,6 +46,7 @@ LOCKSTEP = "~lockstep"
 LOCKSTEP_TIMEOUT = "~lockstep_timeout"
 LOCKSTEP_SENSOR = "~lockstep_sensor"
 STATE_LOG = "~state_log"
+RECORDING = "~recording"
 PROFILE = "~profile"
 RUNNING = "~running"  # set by the node: {world: its file's name, since: s, wall}
 

@@ -28,6 +28,7 @@ from bullet_sim_ros.only_simulator import register
 from bullet_sim_ros.package_paths import open_resources, unreadable_world
 from bullet_sim_ros.params import NodeParameters, read_node_parameters
 from bullet_sim_ros.plugins import register_plugins
+from bullet_sim_ros.recording import Recording
 from bullet_sim_ros.rospy_patches import keep_every_publisher, send_promptly
 from bullet_sim_ros.services import offer_services
 from bullet_sim_ros.shutdown import end_before_topics, end_by_signals, shut_down
@@ -165,12 +166,13 @@ def start(options: argparse.Namespace) -> Simulation | None:
         return None
     end_by_signals(simulation.stop)  # before its topics and services are visible
     open_network(simulation, parameters)
-    if parameters.state_log:
+    for kind, name, file in ((StateLog, names.STATE_LOG, parameters.state_log),
+                             (Recording, names.RECORDING, parameters.recording)):
         try:
-            StateLog(simulation, Path(parameters.state_log))
+            if file:
+                kind(simulation, Path(file))
         except OSError as error:
-            rospy.logfatal("parameter %s: %s: %s", rospy.resolve_name(names.STATE_LOG),
-                           parameters.state_log, error.strerror)
+            rospy.logfatal("parameter %s: %s: %s", rospy.resolve_name(name), file, error.strerror)
             return None
     return simulation
 

@@ -22,6 +22,7 @@ class NodeParameters:
     lockstep_timeout: float = 1.0  # s, wall
     lockstep_sensor: str = ""  # topic after whose messages to wait, instead of camera frames
     state_log: str = ""  # file for true poses, contacts and calls; empty: none
+    recording: str = ""  # file for all links' poses and the scene; empty: none
     profile: bool = False  # print what each stage of the work costs
 
 
@@ -38,6 +39,7 @@ def read_node_parameters() -> NodeParameters:
         max(0.0, _number(names.LOCKSTEP_TIMEOUT, defaults.lockstep_timeout)),
         str(rospy.get_param(names.LOCKSTEP_SENSOR, defaults.lockstep_sensor)).strip(),
         str(rospy.get_param(names.STATE_LOG, defaults.state_log)),
+        str(rospy.get_param(names.RECORDING, defaults.recording)),
         bool(rospy.get_param(names.PROFILE, defaults.profile)),
     )
 

@@ -7,6 +7,8 @@ import pytest
 from gazebo_msgs.msg import ModelState
 
 from bullet_sim.pose import Pose
+from bullet_sim.rendering.scene_text import scene_from_text
+from bullet_sim_ros.recording import Recording
 from bullet_sim_ros.state_log import StateLog
 
 BOX = """<model name="NAME"><link name="body">
@@ -65,3 +67,25 @@ def test_a_full_disk_ends_the_simulation_with_one_line(bench, caplog):
     bench.run(0.2)
     assert caplog.text.count("/dev/full: No space left on device: the simulation ends") == 1
     assert bench.simulation.stopped()
+
+
+def test_a_recording_has_the_scene_once_and_the_links_that_move_at_10_hz(bench, tmp_path):
+    Recording(bench.simulation, tmp_path / "run.jsonl")
+    bench.spawn(BOX.replace("NAME", "high"), Pose((0, 0, 5)))
+    bench.run(0.4)
+    bench.spawn(BOX.replace("NAME", "low"), Pose((3, 0, 0.5)))
+    bench.run(0.2)
+    lines = [json.loads(line) for line in (tmp_path / "run.jsonl").read_text().splitlines()]
+    assert [next(iter(line)) for line in lines] == [
+        "scene", "names", *["time"] * 4, "scene", "names", *["time"] * 2]
+    assert set(scene_from_text(lines[0]["scene"]).links) >= {("high", "body")}
+    assert lines[1]["names"] == ["high::body"]  # and not the ground's
+    assert [line["time"] for line in lines[2:6]] == pytest.approx([0.1, 0.2, 0.3, 0.4])
+    assert lines[2]["poses"][0] == pytest.approx([0, 0, 5 - 0.049, 0, 0, 0, 1], abs=1e-3)
+    assert len(lines[-1]["poses"]) == 2
+
+
+def test_a_recording_on_a_full_disk_ends_and_the_simulation_goes_on(bench):
+    Recording(bench.simulation, Path("/dev/full"))
+    bench.run(0.3)
+    assert bench.simulation.world.time == pytest.approx(0.3)

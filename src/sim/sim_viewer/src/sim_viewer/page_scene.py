@@ -7,6 +7,7 @@ triangles (m, 3). GET /texture/N is an image that browsers can show.
 """
 
 import itertools
+import mimetypes
 import threading
 from collections.abc import Hashable
 from pathlib import Path
@@ -32,7 +33,8 @@ NOTHING = {"background": None, "ambient": [1, 1, 1, 1], "sky": False, "lights": 
 class Meshes:
     """The shapes of the present scenes, kept as long as one of them uses them. Thread safe."""
 
-    def __init__(self, node: Node):
+    def __init__(self, node: Node | None = None):
+        """`node`: needed only to serve them."""
         self._node = node
         self._lock = threading.Lock()
         self._wanted: dict[Hashable, set[tuple[Visual, ...]]] = {}  # by owner
@@ -76,6 +78,16 @@ class Meshes:
     def texture_numbers(self) -> dict[str, int]:
         """The numbers by which the page asks for image files, by path."""
         return {path: number for number, path in self._textures.items() if Path(path).is_file()}
+
+    def files(self) -> dict[str, tuple[str, bytes]]:
+        """Content type and content of all that the page would ask for, by path."""
+        found = {f"mesh/{number}": ("application/octet-stream", mesh_bytes(part))
+                 for number, part in self._parts.items()}
+        for path, number in self.texture_numbers().items():
+            as_is = path.lower().endswith(SHOWN_AS_IS)
+            kind = mimetypes.guess_type(path)[0] if as_is else "image/png"
+            found[f"texture/{number}"] = kind, (Path(path).read_bytes() if as_is else _as_png(path))
+        return found
 
     async def serve_mesh(self, request: web.Request) -> web.Response:
         """The handler of /mesh/N; HTTPNotFound if the scene does not have that part any more."""

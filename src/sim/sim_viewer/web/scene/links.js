@@ -6,9 +6,9 @@ import { lighting, setLights, surface } from "./material.js";
 const HEAD_BYTES = 16; // of /mesh/N: four uint32
 const SHARPNESS = 8; // samples, of textures seen at a flat angle
 
-async function loadGeometry(number) {
-  const answer = await fetch(`mesh/${number}`);
-  if (!answer.ok) throw new Error(`mesh ${number}: ${answer.status}`);
+async function loadGeometry(address) {
+  const answer = await fetch(address);
+  if (!answer.ok) throw new Error(`${address}: ${answer.status}`);
   const data = await answer.arrayBuffer();
   const [corners, triangles, hasUv] = new Uint32Array(data, 0, 4);
   let at = HEAD_BYTES;
@@ -27,20 +27,22 @@ async function loadGeometry(number) {
   return geometry;
 }
 
-function loadTexture(number) {
-  return new THREE.TextureLoader().loadAsync(`texture/${number}`).then((texture) => {
+function loadTexture(address) {
+  return new THREE.TextureLoader().loadAsync(address).then((texture) => {
     texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
     texture.anisotropy = SHARPNESS;
     return texture;
   });
 }
 
-/** Everything by name; `onChange()` when models or meshes are new. */
+/** Everything by name; `onChange()` when models or meshes are new; `address(path)`: what to load for
+ * `mesh/N` or `texture/N`. */
 export class Links {
-  constructor(onChange) {
+  constructor(onChange, address = (path) => path) {
     this.root = new THREE.Group();
     this.models = new Map(); // name -> its links
     this._onChange = onChange;
+    this._address = address;
     this._shared = lighting();
     this._links = new Map();
     this._geometries = new Map(); // number -> promise
@@ -109,8 +111,10 @@ export class Links {
     try {
       const look = part.material;
       const [geometry, picture] = await Promise.all([
-        once(this._geometries, part.mesh, loadGeometry),
-        look.texture === null ? null : once(this._textures, look.texture, loadTexture)
+        once(this._geometries, part.mesh,
+          (number) => loadGeometry(this._address(`mesh/${number}`))),
+        look.texture === null ? null : once(this._textures, look.texture,
+          (number) => loadTexture(this._address(`texture/${number}`)))
           .catch(() => null),
       ]);
       const textured = geometry.hasAttribute("uv") ? picture : null;

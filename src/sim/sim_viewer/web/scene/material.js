@@ -85,7 +85,7 @@ void main() {
 #endif
 #ifdef RIM
   float away = 1.0 - abs(dot(normal, normalize(cameraPosition - world)));
-  if (lit) colour += vec3(0.25 * away * away * away);
+  if (lit) colour += vec3(0.12 + 0.4 * away * away);
 #endif
   colour = min(colour, 1.0);
 #ifdef TEXTURED

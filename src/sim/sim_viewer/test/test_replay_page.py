@@ -1,0 +1,109 @@
+"""The page of a recorded run: what is read of a recording, and that browsers show it from disk."""
+
+import json
+import re
+import subprocess
+
+import chromium
+import firefox
+import numpy as np
+import pytest
+from background import wait_until
+from sim_viewer.replay_page import Curve, Shown, read_recording, replay_page
+
+from bullet_sim.description import Box, LightDescription, Material, SceneDescription, Visual
+from bullet_sim.pose import Pose
+from bullet_sim.rendering.scene import Scene
+from bullet_sim.rendering.scene_text import scene_to_text
+
+pytestmark = pytest.mark.processes  # browsers
+ROBOT, GROUND = ("robot", "base_link"), ("ground", "link")
+
+
+def scene(*robots):
+    made = Scene(SceneDescription(background=(0.7, 0.7, 0.7, 1.0)))
+    made.add_light(LightDescription("sun", type="directional", direction=(0, 0, -1)))
+    for key in (GROUND, *robots):
+        size, colour = ((4, 4, 0.01), 0.1) if key == GROUND else ((0.3, 0.2, 0.2), 0.9)
+        paint = Material(diffuse=(colour, 0.0, 0.0, 1.0), ambient=(colour, 0.0, 0.0, 1.0))
+        made.add_link(key, [Visual("v", Box(size), material=paint)], Pose())
+    return {"scene": scene_to_text(made)}
+
+
+def at(time, *places):
+    return {"time": time, "poses": [[x, 0, 0.2, 0, 0, 0, 1] for x in places]}
+
+
+@pytest.fixture
+def recorded(tmp_path):
+    def write(*lines, rest=""):
+        file = tmp_path / "recording.jsonl"
+        file.write_text("".join(json.dumps(line) + "\n" for line in lines) + rest)
+        return read_recording(file)
+    return write
+
+
+NAMES = {"names": ["robot::base_link"]}
+
+
+def test_links_that_come_later_and_a_second_simulation_s_time(recorded):
+    more = ("late", "link")
+    motion = recorded(scene(ROBOT), NAMES, at(0.1, 0), at(0.2, 1), scene(ROBOT, more),
+                      {"names": [*NAMES["names"], "late::link"]}, at(0.3, 2, 7), at(0.1, 3, 8),
+                      rest='{"time": 0.2, "po')  # it was killed
+    assert motion.times == pytest.approx([0.1, 0.2, 0.3, 0.4])
+    assert motion.poses[:, 0, 0].tolist() == [0, 1, 2, 3]
+    assert motion.poses[:, 1, 0].tolist() == [7, 7, 7, 8]
+    assert set(motion.scene.links) == {ROBOT, more, GROUND}
+    assert motion.speeds() == pytest.approx([0, 10, 10, 10])
+
+
+def test_nothing_was_recorded(recorded, tmp_path):
+    assert read_recording(tmp_path / "none") is None
+    assert recorded(scene(ROBOT), NAMES, at(0.1, 0)) is None
+
+
+def test_a_text_that_ends_the_script_is_only_text(recorded):
+    motion = recorded(scene(ROBOT), NAMES, at(0.1, 0), at(0.2, 1))
+    page = replay_page(motion, Shown("a < b", text="</script><script>alert(1)</script>"))
+    assert "alert(1)</script>" not in page and "<title>a &lt; b</title>" in page
+    assert not re.search(r"""(src|href)=["']?(?!data:)[^"'>]""", page)
+
+
+def red_column(page):
+    """Where the robot is to be seen, px from the left; 0: nowhere."""
+    picture = page.picture()[60:400, :700].astype(int)
+    red = picture[..., 2] - picture[..., :2].max(-1) > 120
+    return float(np.nonzero(red)[1].mean()) if red.any() else 0.0
+
+
+@pytest.mark.timeout(180)
+@pytest.mark.parametrize("kind", [chromium, firefox], ids=lambda kind: kind.__name__)
+def test_from_disk_the_slider_moves_robot_and_film_and_nothing_is_asked_of_a_network(
+        kind, recorded, tmp_path):
+    film, times = tmp_path / "run.mp4", np.linspace(0, 5, 50)
+    subprocess.run(["ffmpeg", "-loglevel", "error", "-f", "lavfi", "-i",
+                    "testsrc=size=160x120:rate=10:duration=2", "-pix_fmt", "yuv420p", film],
+                   check=True)
+    motion = recorded(scene(ROBOT), NAMES, *(at(time, time / 5) for time in times))
+    file = tmp_path / "run.html"
+    file.write_text(replay_page(motion, Shown("lap", film=film, curves=[
+        Curve(("speed", "速度"), "m/s", motion.times, motion.speeds())])))
+    browser = kind.Browser()
+    try:
+        page = browser.open(file.as_uri())
+        page.wait_for("document.querySelector('.hint')?.hidden"
+                      " && document.querySelector('#film')?.readyState >= 2")
+        page.evaluate("document.querySelector('.views select').value = ''")  # follow nothing
+        before = wait_until(lambda: red_column(page), "the robot")
+        page.evaluate("const slider = document.querySelector('#time'); slider.value = 5;"
+                      "slider.dispatchEvent(new Event('input'))")
+        page.wait_for("document.querySelector('#film').currentTime > 1.8")
+        wait_until(lambda: abs(red_column(page) - before) > 30, "the robot elsewhere")
+        assert page.evaluate("document.querySelector('figcaption').textContent").startswith(
+            "speed: 0.20 m/s")
+        assert page.errors == []
+        assert {url.partition(":")[0] for url in getattr(page, "requests", [])} <= {
+            "file", "data", "blob"}
+    finally:
+        browser.close()
