@@ -6,7 +6,7 @@
 A maker is a module beside this one with a function `files`, and `stale` if it removes folders that
 it made once. What they make is committed, except that of name_packages and turtlebot3_worlds, which
 each build makes. The pictures of pages have programs of their own
-here, lesson_pictures.py and theory_pictures.py.
+here: lesson_pictures.py, theory_pictures.py and loop_picture.py.
 """
 
 import argparse
