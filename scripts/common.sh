@@ -41,14 +41,16 @@ enter_workspace() {
   if [ ! -w "$home/.ros" ] && { [ -e "$home/.ros" ] || [ ! -w "$home" ]; }; then export ROS_HOME=$root/.setup/ros; fi
 }
 
-# Sends this shell, or what it becomes by exec, a SIGHUP when the terminal closes: of `ssh -t HOST make ...`, make alone gets it.
+# Sends this shell, or what it becomes by exec, a SIGHUP when its terminal closes: of `ssh -t HOST make ...`, make alone gets it.
+# Not in the background (make mark ... &), where it is meant to go on.
 end_with_terminal() {
   { : < /dev/tty; } 2> /dev/null || return 0
   setpriv --pdeathsig TERM python3 -c 'import os, select, sys
 terminal = select.poll()
 terminal.register(0, 0)  # its end alone: keys are read by others
-terminal.poll()
-os.kill(int(sys.argv[1]), 1)' $$ < /dev/tty > /dev/null 2>&1 &
+if os.tcgetpgrp(0) == os.getpgrp():
+    terminal.poll()
+    os.kill(int(sys.argv[1]), 1)' $$ < /dev/tty > /dev/null 2>&1 &
 }
 
 # Sets up what a trial with these arguments needs.

@@ -1,5 +1,6 @@
 """Programs that get signals, each in a process of its own."""
 
+import select
 import signal
 import subprocess
 import sys
@@ -75,6 +76,19 @@ def test_a_program_that_does_not_end_when_asked_is_ended(start, number, limit):
     process.send_signal(number)
     assert process.communicate(timeout=LIMIT) == ("asked\n", "")
     assert process.returncode == (128 + number if limit == "1" else 0)
+
+
+@pytest.mark.parametrize("program", [[INTERRUPTED], [ASKED, "60"]])
+def test_nohup_outlives_its_terminal(start, program):
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup; a process inherits it
+    try:
+        process = start(*program)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    process.send_signal(signal.SIGHUP)
+    assert select.select([process.stdout], [], [], 0.5)[0] == []
+    process.send_signal(signal.SIGTERM)
+    assert process.stdout.readline() in ("cleanup\n", "asked\n")
 
 
 def test_a_program_that_cannot_even_be_asked_is_ended(start):

@@ -13,6 +13,8 @@ import tty
 from collections.abc import Callable, Iterator
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:  # by nohup: it goes on without its terminal
+    SIGNALS = SIGNALS[:2]
 
 
 @contextlib.contextmanager
