@@ -75,7 +75,10 @@ OF_PYTHON = (
     "invalid character '{0}' ({1})", "invalid non-printable character {0}",
     "invalid decimal literal", "'{0}' outside function", "'{0}' outside loop",
     "unexpected character after line continuation character", "keyword argument repeated: {0}",
-    "positional argument follows keyword argument", "source code string cannot contain null bytes")
+    "positional argument follows keyword argument", "source code string cannot contain null bytes",
+    "duplicate argument '{0}' in function definition", "expecting '}'",
+    "empty expression not allowed", "single '}' is not allowed",
+    "expecting a valid expression after '{'", "valid expression required before '}'")
 # Of PyYAML.
 OF_YAML = ("expected '{0}' or '{1}', but got '{2}'", "expected '{0}', but found '{1}'")
 # Of shell scripts that `python3 -m terminal_language` translates, as the terminal is a learner's.
@@ -93,7 +96,7 @@ OF_TABLES = (
     "  follower", "laps", "lap s", "RMS cm", "max cm", "sent", "dropped", "real time", "outcome",
     "goal", "reached", "straight s", "shortest s", "off cm", "off °", " points", "student",
     "halls", "contact", "mean time, s", "slowest, s", "nearest, m",
-    "file", "robot", "world",  # and of check
+    "file", "robot", "world", "scripts",  # and of check
     "mission", "passed", "after s", "contacts", "why not", "yes", "mapping", "goals", "standing")
 # Of progress lines, whose frame has few words.
 OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off",

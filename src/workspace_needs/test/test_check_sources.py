@@ -7,10 +7,10 @@ import time
 from pathlib import Path
 
 import pytest
-from workspace_needs.check import parameter_commands
-from workspace_needs.check.findings import PROBLEM, table
-from workspace_needs.check.sources import program_findings, script_findings
+from workspace_needs.check import parameter_commands, sources
+from workspace_needs.check.findings import PROBLEM, UNCHECKED, table
 from workspace_needs.workspace import _files
+from workspaces import NODE, add_files, program_findings, script_findings
 
 from bullet_sim.errors import FormatError
 from bullet_sim_ros.interface import ABSENT, APPROXIMATED
@@ -28,7 +28,7 @@ def node(tmp_path):
     def write(content: bytes) -> list[tuple[str, str]]:
         path.write_bytes(content)
         path.chmod(0o755)
-        return [(finding.where, finding.how) for finding in program_findings(tmp_path)]
+        return [(found.where, found.how) for found in program_findings(tmp_path)]
     write.path = path
     return write
 
@@ -57,24 +57,16 @@ def test_others_are_not_named(node, content):
     assert node(content) == []
 
 
-def test_a_python_file_without_a_first_line(node):
-    (_, how), = node(b"import os\n")
-    assert how == ("it has no #!, so that rosrun starts it as a shell script; write "
-                   "#!/usr/bin/env python3 there")
-
-
-@pytest.mark.parametrize("folder, is_module", [("src/arm", True), ("scripts", False)])
-def test_a_module_below_src_needs_no_first_line(tmp_path, folder, is_module):
-    (tmp_path / "package.xml").touch()
-    path = tmp_path / folder / "part.py"
-    path.parent.mkdir(parents=True)
-    (path.parent / "__init__.py").touch(0o755)
-    path.write_text("import os\n")
-    path.chmod(0o755)
-    assert len(list(program_findings(tmp_path))) == len(list(script_findings(path))) == (
-        0 if is_module else 1)
-    path.chmod(0o644)
-    assert list(script_findings(path)) == []
+@pytest.mark.parametrize("executable, why", [
+    (True, "it has no #!, so that rosrun starts it as a shell script; write "
+           "#!/usr/bin/env python3 there"),
+    (False, "rosrun does not find it: chmod +x {}, and write #!/usr/bin/env python3 as its first "
+            "line")])
+def test_a_program_without_a_first_line(tmp_path, executable, why):
+    path = add_files(tmp_path, {"scripts/talk.py": NODE.partition("\n")[2]}) / "scripts/talk.py"
+    path.chmod(0o755 if executable else 0o644)
+    found, = program_findings(tmp_path)
+    assert found.how == why.format(path) and [found] == script_findings(path)
 
 
 def test_what_catkin_starts_itself_needs_no_first_line(node):
@@ -85,26 +77,29 @@ def test_what_catkin_starts_itself_needs_no_first_line(node):
         "catkin_install_python(PROGRAMS scripts/talker.py DESTINATION x)")
     assert node(b"#!/usr/bin/python2.7\n") == []
     node.path.chmod(0o644)
-    assert list(program_findings(folder)) == list(script_findings(node.path)) == []
+    assert program_findings(folder) == script_findings(node.path) == []
     node.path.write_bytes(b"def f(:\n")
-    assert list(program_findings(folder)) == list(script_findings(node.path)) != []
+    assert program_findings(folder) == script_findings(node.path) != []
     (folder / "CMakeLists.txt").write_text(
         "# catkin_install_python(PROGRAMS scripts/talker.py)\ninstall(PROGRAMS scripts/talker.py)")
     node.path.write_bytes(b"#!/usr/bin/env python3\n")
     assert ["chmod +x" in found.how for found in program_findings(folder)] == [True]
+    (folder / "CMakeLists.txt").write_text(
+        "file(GLOB ALL scripts/*.py)\ncatkin_install_python(PROGRAMS ${ALL} DESTINATION ${BIN})")
+    assert program_findings(folder) == []
 
 
 def test_a_script_that_is_not_executable_is_named_with_the_command(node, tmp_path):
     (tmp_path / "package.xml").touch()
-    node(b"#!/usr/bin/env python3\n")
+    node(NODE.encode())
     node.path.chmod(0o644)
     found, = program_findings(tmp_path)
-    assert [found] == list(script_findings(node.path)) and found.status == PROBLEM
-    (node.path.parent / "other.py").write_text("import os, talker\n")
-    assert list(program_findings(tmp_path)) == []
+    assert [found] == script_findings(node.path) and found.status == PROBLEM
+    (node.path.parent / "other.py").write_text("from . import (\n    os, talker)\n")
+    assert program_findings(tmp_path) == []
     (node.path.parent / "other.py").unlink()
     subprocess.run(found.how.partition("type: ")[2], shell=True, check=True)
-    assert list(program_findings(tmp_path)) == []
+    assert program_findings(tmp_path) == []
 
 
 @pytest.mark.parametrize("body, part, status, how", [
@@ -116,7 +111,8 @@ def test_a_script_that_is_not_executable_is_named_with_the_command(node, tmp_pat
     ("return\n", "line 2", PROBLEM, "Python 3 cannot read it: 'return' outside function"),
     ("import moveit_commander\n", "line 2", ABSENT, "module moveit_commander is not here: MoveIt"),
     ("import os, rospyy.msg\n", "line 2", ABSENT, "is rospy meant?"),
-    ("def f():\n    from urllib2 import x\n", "line 3", ABSENT, "Python 3 calls it urllib.request"),
+    ("class A:\n    from urllib2 import x\n", "line 3", ABSENT, "Python 3 calls it urllib.request"),
+    ("import httplib\n", "line 2", ABSENT, "Python 3 calls it http.client"),
     ("import numpy as np\nnp.float(1)\nnp.float(2)\n", "line 3", APPROXIMATED,
      "numpy.float is an old name: write float"),
     ("from collections import Iterable\n", "line 2", APPROXIMATED, "collections.abc.Iterable")])
@@ -125,12 +121,13 @@ def test_what_python_will_not_do_is_named_with_its_line(node, body, part, status
     assert node(b"#!/usr/bin/env python3\n" + body)
     found, = program_findings(node.path.parents[1])
     assert (found.part, found.status) == (part, status) and how in found.how
-    assert [found] == list(script_findings(node.path))
+    assert [found] == script_findings(node.path)
 
 
 @pytest.mark.parametrize("body", [
     b"try:\n    import Queue\nexcept ImportError:\n    import queue\n", b"import rospy, beside\n",
-    b"from . import x\n", b"import sys\nsys.path.append('/x')\nimport other\n",
+    b"from . import x\n", b"def f():\n    import other\n",
+    b"import sys\nsys.path.append('/x')\nimport other\n",
     b"import contextlib\nwith contextlib.suppress(ImportError):\n    import other\n",
     b"import time\nt = time.clock() if hasattr(time, 'clock') else 0\n",
     b"import numpy as np\nif not hasattr(np, 'float'):\n    np.float = float\n",
@@ -141,70 +138,49 @@ def test_what_python_will_do_is_not_named(node, body):
     assert node(b"#!/usr/bin/env python3\n" + body) == []
 
 
-def test_modules_of_the_workspace_are_there(tmp_path):
-    path = tmp_path / "src/arm/scripts/talk.py"
-    for name in ("arm/scripts/x", "arm_msgs/package.xml", "hand/src/grip/part.py",
-                 "hand/lib/fast.so", "hand/launch/nobodys.launch"):
-        (tmp_path / "src" / name).parent.mkdir(parents=True)
-        (tmp_path / "src" / name).touch()
-    (tmp_path / "src/arm/package.xml").write_text("<package><name>arm_of_mine</name></package>")
-    path.write_text("import arm_msgs.msg, arm_of_mine.cfg, grip, fast\n"
-                    "import nobodys\nimport launch\n")
-    assert [found.part for found in script_findings(path)] == ["line 2", "line 3"]
+@pytest.mark.parametrize("name, text, more, named", [
+    ("scripts/talk.py", NODE, {}, True), ("src/talk.py", NODE, {}, True),
+    ("src/talk.py", "class A:\n    def f(self):\n        rospy.init_node('n')\n", {}, True),
+    ("scripts/talk.py", NODE, {"scripts/node": "#!/usr/bin/env python3\nimport talk\n"}, False),
+    ("src/arm/talk.py", NODE, {}, False), ("test/talk.py", NODE, {}, False),
+    ("scripts/talk.py", 'if __name__ == "__main__":\n    main()\n', {}, False),
+    ("scripts/env.sh", "#!/bin/sh\n", {}, False),
+    ("scripts/env.sh", "#!/bin/sh\n", {"CMakeLists.txt": "install(PROGRAMS scripts/env.sh)"}, True),
+    ("tools/talk.py", "main()\n",
+     {"launch/a.launch": '<launch><node pkg="arm" type="talk.py" name="n"/></launch>'}, True)])
+def test_only_a_program_has_to_be_executable(tmp_path, name, text, more, named):
+    path = add_files(tmp_path, {name: text, **more}) / name
+    path.chmod(0o644)
+    assert ["chmod +x" in each.how for each in program_findings(tmp_path)] == [True] * named
 
 
-@pytest.mark.parametrize("body, is_program", [
-    ('if __name__ == "__main__":\n    pass\n', True), ("def main():\n    pass\nmain()\n", True),
-    ("try:\n    rospy.init_node('n')\nexcept Exception:\n    pass\n", True),
-    ("class Node:\n    def __init__(self):\n        rospy.init_node('n')\n", False)])
-@pytest.mark.parametrize("folder", ["scripts", "src", "bin"])
-def test_a_program_that_rosrun_cannot_start_is_named_and_a_module_is_not(
-        tmp_path, folder, body, is_program):
-    (tmp_path / "package.xml").touch()
-    path = tmp_path / folder / "talker.py"
-    path.parent.mkdir()
-    path.write_text(body)
-    found = list(script_findings(path))
-    assert found == list(program_findings(tmp_path))
-    assert [("#!" in each.how, "chmod +x" in each.how) for each in found] == (
-        [(True, False), (False, True)] if is_program else [])
-    (path.parent / "other.py").write_text("from talker import main\n")
-    assert list(program_findings(tmp_path)) == []
+@pytest.mark.parametrize("name", ["README", "LICENSE", "scripts/Makefile", "scripts/data.txt",
+                                  "scripts/empty.py", "scripts/{{name}}.py", "docs/conf.py",
+                                  "test/unit/bad.py", "src/arm/of_python_2.py"])
+def test_where_all_files_are_executable_others_are_not_taken_for_programs(tmp_path, name):
+    text = "" if "empty" in name else "from the lab\nimport it as you like\nprint 1\n"
+    (add_files(tmp_path, {name: text}) / name).chmod(0o777)
+    assert program_findings(tmp_path) == []
 
 
-def test_modules_of_a_package_are_read_and_what_is_absent_is_named_once(tmp_path):
-    for name, text in (("src/arm/a.py", "import nobodys\n"), ("src/arm/b.py", "import nobodys\n"),
-                       ("src/arm/c.py", "print 1\n"), ("setup.py", "import nobodys2\n"),
-                       ("own/pyvenv.cfg", ""), ("own/lib/d.py", "print 1\n")):
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text)
-    assert [(Path(each.where).name, each.status) for each in program_findings(tmp_path)] == [
-        ("a.py", ABSENT), ("c.py", PROBLEM)]
+def test_a_module_is_read_if_another_needs_it(tmp_path):
+    files = {"src/arm/a.py": "print 1\n", "src/arm/b.py": "import nobodys\n", "setup.py": "print 1",
+             "own/pyvenv.cfg": "", "own/lib/d.py": "print 1\n"}
+    assert program_findings(add_files(tmp_path, files)) == []
+    user = tmp_path / "scripts/user.py"
+    add_files(tmp_path, {"scripts/user.py": "import sys\nif sys.version:\n    import arm.a\n"})
+    assert program_findings(tmp_path) == []
+    user.write_text("from arm import a, b\n")
+    assert [Path(each.where).name for each in program_findings(tmp_path)] == ["a.py"]
 
 
-@pytest.mark.parametrize("line, why", [
-    ("import rospy.nothere", "module rospy.nothere is not here: rospy has no module nothere"),
-    ("import rospy.coer", "rospy has no module coer (did you mean core?)"),
-    ("from geometry_msgs.msg import Pose, Twistt",
-     "geometry_msgs.msg has no message or service Twistt (did you mean Twist?)"),
-    ("from std_srvs.srv import Emptyy",
-     "std_srvs.srv has no message or service Emptyy (did you mean Empty?)"),
-    ("import bullet_sim.nothere", "bullet_sim has no module nothere"),
-    ("import cv2S", "is cv2 meant?"), ("import numppy", "is numpy meant?"),
-    ("import Rospy", "is rospy meant?")])
-def test_a_part_of_a_module_that_is_not_there_and_the_near_name(node, line, why):
-    node.path.write_text(line + "\n")
-    assert [why in found.how for found in script_findings(node.path)] == [True]
-
-
-@pytest.mark.parametrize("line", [
-    "import os.path, rospy.core, xml.etree.ElementTree, bullet_sim.formats.loading",
-    "from std_srvs.srv import Empty, EmptyRequest, EmptyResponse", "from rospy.msg import AnyMsg",
-    "from geometry_msgs.msg import *",
-    "from gazebo_msgs.msg import ModelState, _ModelState"])
-def test_parts_of_modules_that_are_there(node, line):
-    node.path.write_text(line + "\n")
-    assert list(script_findings(node.path)) == []
+def test_the_error_of_one_script_ends_nothing(node, monkeypatch):
+    def fail(*_):
+        raise KeyError("x")
+    monkeypatch.setattr(sources, "python_findings", fail)
+    assert node(NODE.encode()) == [(str(node.path), "it could not be checked: KeyError: 'x'")]
+    late, = sources.program_findings(node.path.parent, time.monotonic() - 1)
+    assert late.status == UNCHECKED
 
 
 def test_a_script_that_is_too_large_is_said_to_be_unread(node):
@@ -213,8 +189,9 @@ def test_a_script_that_is_too_large_is_said_to_be_unread(node):
 
 
 def test_an_empty_script_is_named(node):
-    (_, how), = node(b"")
-    assert how == "it is empty, so that nothing starts"
+    node(b"")
+    assert [found.how for found in script_findings(node.path)] == [
+        "it is empty, so that nothing starts"]
 
 
 @pytest.mark.parametrize("line, named", [
@@ -231,13 +208,13 @@ def test_a_transport_without_a_plugin_is_named_with_its_line(tmp_path, monkeypat
 
 def test_a_link_to_nowhere_is_no_source(tmp_path):
     (tmp_path / ".#see.cpp").symlink_to("me@host.1234")  # Emacs's lock
-    assert list(program_findings(tmp_path)) == []
+    assert program_findings(tmp_path) == []
 
 
 def test_the_time_for_a_source_is_linear(tmp_path):
     (tmp_path / "see.cpp").write_text("TransportHints(" * 20_000)
     began = time.process_time()
-    assert list(program_findings(tmp_path)) == []
+    assert program_findings(tmp_path) == []
     assert time.process_time() - began < 5  # a minute without bounds
 
 
@@ -290,7 +267,10 @@ def test_findings_stand_in_the_order_of_their_lines(check):
 @pytest.mark.parametrize("body, said", [
     ("x = (1\n", "'(' 没有闭合"), ("def f\n", "缺少“(”"), ("f() = 1\n", "这里不能给函数调用赋值"),
     ("if x\n    y\n", "缺少“:”"), ("  x\n", "意外的缩进"),
-    ("print 1\n", "“print”调用缺少括号")])
+    ("print 1\n", "“print”调用缺少括号"), ("x = “a”\n", "无效字符 “（U+201C）"),
+    ("def f(a, a): pass\n", "函数定义中参数“a”重复"),
+    ("f'{a b}'\n", "读不懂它：语法错误，可能漏了逗号"),
+    ("import numppy\n", "没有叫这个名字的模块；是不是想写 numpy？")])
 def test_pythons_errors_are_translated(node, monkeypatch, body, said):
     monkeypatch.setenv("LC_ALL", "C.UTF-8")
     monkeypatch.setenv("LANGUAGE", "zh_CN")

@@ -1,7 +1,12 @@
 """Workspaces written for tests, in the style of those that pages have people clone."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
+from workspace_needs.check import modules, packages, sources
+from workspace_needs.check.findings import Finding
+
+NODE = "#!/usr/bin/env python3\nimport rospy\nrospy.init_node('n')\n"
 MANIFEST = """<?xml version="1.0"?>
 <package format="{format}"><name>{name}</name><version>1.0.0</version><description>d</description>
 <maintainer email="who@example.com">who</maintainer><license>BSD</license>
@@ -23,6 +28,29 @@ def add_package(source: Path, name: str, depends: str = "", components: str = ""
         f"find_package(catkin REQUIRED{' COMPONENTS' if components else ''} {components})\n"
         f"{cmake}\ncatkin_package()\n", encoding="utf-8")
     return folder
+
+
+def add_files(folder: Path, files: Mapping[str, str]) -> Path:
+    """The folder, as that of a package with these files: those with #! are executable."""
+    for name, text in {"package.xml": "<package><name>arm</name></package>", **files}.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        path.chmod(0o755 if text.startswith("#!") else 0o644)
+    return folder
+
+
+def program_findings(folder: Path) -> list[Finding]:
+    """As if check was started anew, which reads each file once."""
+    for cached in (modules._names_below, packages._scripts_below, packages._imported):
+        cached.cache_clear()
+    return list(sources.program_findings(folder))
+
+
+def script_findings(path: Path) -> list[Finding]:
+    """The same of a script that was named alone."""
+    program_findings(path / "nowhere")
+    return list(sources.script_findings(path))
 
 
 def turtlebot3_style(workspace: Path) -> Path:

@@ -66,6 +66,10 @@ class Tables:
 
     def answer(self, key: str) -> Answer:
         """Who has `key`; a name in Debian's form is looked up in apt's list."""
+        return self.known(key) or Answer(UNKNOWN, why=self._nobody(key))
+
+    def known(self, key: str) -> Answer | None:
+        """The same, without the search for a similar name, which takes long."""
         packages = self.debian.get(key, {}).get("debian", {}).get(self._release)
         if packages is not None:
             return Answer(DEBIAN, tuple(packages))
@@ -79,7 +83,7 @@ class Tables:
             here = self._named(self._release)
             return Answer(ABSENT, why=f"{others[0]} has it, {here} does not" if len(others) == 1
                           else f"{' and '.join(others)} have it, {here} does not")
-        return Answer(UNKNOWN, why=self._nobody(key))
+        return None
 
     def _other_releases(self, key: str) -> list[str]:
         """Other releases that have `key`, such as `Debian 13`."""

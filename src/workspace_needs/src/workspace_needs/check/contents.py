@@ -5,6 +5,7 @@ import os
 import pickle
 import re
 import tempfile
+import time
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -14,7 +15,8 @@ from bullet_sim_ros.interface import read_interface, rows_by_name
 from bullet_sim_ros.package_paths import open_resources
 from workspace_needs.check.findings import WORKS, Finding, problem
 from workspace_needs.check.launches import NONE_UNBUILT, LaunchChecker, Unbuilt
-from workspace_needs.check.sources import is_python, is_script, program_findings, script_findings
+from workspace_needs.check.packages import has_interpreter, is_python
+from workspace_needs.check.sources import holds_python, program_findings, script_findings
 from workspace_needs.check.texts import TextChecker
 
 LONGEST = 60.0  # s of processor time for a file; large worlds take 10
@@ -66,8 +68,9 @@ class Check:
             return self._texts.world_file(path)
         if path.suffix == ".yaml":
             return self._launches.yaml_file(path)
-        if is_script(path):
-            what = "first line, syntax and modules" if is_python(path) else "first line"
+        python = is_python(path) or holds_python(path)
+        if python or has_interpreter(path):
+            what = "first line, syntax and modules" if python else "first line"
             return [*script_findings(path)] or [Finding(str(path), what, WORKS)]
         values = dict(word.split(":=", 1) for word in self._arguments if ":=" in word)
         if path.suffix == ".sdf" and "<world" in path.read_text("utf-8", "replace"):
@@ -88,8 +91,9 @@ class Check:
 
     def package(self, folder: Path) -> list[Finding]:
         """Findings about a package's programs and all of its `files_of`."""
-        return [*program_findings(folder), *(finding for path in files_of(folder)
-                                             for finding in self.file(path, alone=False))]
+        return [*program_findings(folder, time.monotonic() + LONGEST),
+                *(finding for path in files_of(folder)
+                  for finding in self.file(path, alone=False))]
 
 
 def files_of(folder: Path) -> list[Path]:

@@ -5,21 +5,22 @@ import os
 import pkgutil
 import re
 import sys
-from collections.abc import Iterable
-from difflib import get_close_matches
+from collections.abc import Iterable, Iterator
 from functools import cache
-from importlib.machinery import ModuleSpec, PathFinder
+from importlib.machinery import PathFinder
 from importlib.util import find_spec
 from pathlib import Path
 
 from bullet_sim.errors import did_you_mean
 from workspace_needs.tables import ABSENT, DEBIAN, OURS, tables
 
-NAME = re.compile(r"<name>\s*(\w+)\s*</name>")
+NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 RELAY = re.compile(r"__extended_path = '([^']*)'")  # of catkin, which builds no copies of modules
 FINDS_ITSELF = re.compile(r"sys\.modules|__path__")  # a package whose modules are anywhere
 GENERATED = re.compile(r"(?:from \._\w+ import \*\s*)+")  # the __init__.py of messages
 ENDINGS = {"msg": ("",), "srv": ("", "Request", "Response")}  # of classes made of a file
+SOURCES = (".py", ".so", ".c", ".cc", ".cpp", ".cxx", ".pyx", ".i", ".proto")  # of modules
+BUILT = re.compile(r"(?:add_library|add_module|swig_add_\w+)\s*\(\s*([\w-]+)", re.IGNORECASE)
 ALIKE = 0.75
 
 
@@ -29,32 +30,39 @@ def why_no_import(module: str, name: str, path: Path, folder: Path) -> str:
     "" if it can or nobody knows. `folder`: of its package.
     """
     first = module.partition(".")[0]
-    own = _names_below(path.parent, False) | _names_below(*_workspace(folder))
-    if first in own:
+    own = (_names_below(path.parent, False), _names_below(*workspace_of(folder)))
+    if any(first in names for names in own):
         return ""  # perhaps made by a build
+    return _why_not_here(module, name, own)
+
+
+@cache
+def _why_not_here(module: str, name: str, own: tuple[frozenset[str], ...]) -> str:
+    first = module.partition(".")[0]
     if first in sys.stdlib_module_names or first in sys.modules or find_spec(first):
         if why := _why_no_submodule(module):
             return f"module {module} is not here: {why}"
         return _why_no_message(module, name)
-    if tables().answer(first).kind == OURS:
+    answer = tables().known(first)
+    if answer and answer.kind == OURS:
         return ""
     return f"module {first} is not here: {_why_no_module(first, own)}"
 
 
-def _why_no_module(name: str, own: Iterable[str]) -> str:
+def _why_no_module(name: str, own: Iterable[Iterable[str]]) -> str:
     if new := tables().renamed_modules.get(name):
         return f"Python 3 calls it {new}"
-    known = {each.lower(): each for each in sorted({*own, *_all_modules()}) if each[0] != "_"}
-    if name.lower() in known:
-        return f"nobody has that name; is {known[name.lower()]} meant?"
+    near = [each for each in sorted(_all_modules().union(*own)) if is_slip(name, each)]
+    same = [each for each in near if each.lower() == name.lower()]
     package = tables().module_packages.get(name, f"python3-{name.lower().replace('_', '-')}")
-    if tables().answer(package).kind == DEBIAN:
+    answer = tables().known(package)
+    if answer and answer.kind == DEBIAN and not same:
         return f"sudo apt-get install {package}"
-    answer = tables().answer(name)
-    if answer.kind == ABSENT or "meant?" in answer.why:
+    if meant := same or near:
+        return f"no module has that name; is {meant[0]} meant?"
+    answer = tables().known(name)
+    if answer and answer.kind == ABSENT:
         return answer.why
-    if near := get_close_matches(name.lower(), known, 1, ALIKE):
-        return f"nobody has that name; is {known[near[0]]} meant?"
     return f"Debian has no {package}; put what brings it beside the script or into src/"
 
 
@@ -63,48 +71,84 @@ def _all_modules() -> frozenset[str]:
     return sys.stdlib_module_names | {module.name for module in pkgutil.iter_modules()}
 
 
+def is_slip(typed: str, name: str) -> bool:
+    """Whether `typed` is `name` with one slip: in a letter of long names, or in capitals.
+
+    Other names that are as near are other people's modules (cupy and copy, pickle5 and pickle).
+    """
+    one, other = typed.lower(), name.lower()
+    if one[0] != other[0] or abs(len(one) - len(other)) > 1 or (
+            re.findall(r"\d", one) != re.findall(r"\d", other)):
+        return False
+    if one == other:
+        return True
+    start = next((at for at, (letter, instead) in enumerate(zip(one, other))
+                  if letter != instead), min(len(one), len(other)))
+    one, other = one[start:], other[start:]
+    if one[1:] == other:  # a letter too many
+        return len(typed) >= 4
+    return len(typed) >= 5 and (one == other[1:] or one[1:] == other[1:]
+                                or (one[:2] == other[1::-1] and one[2:] == other[2:]))
+
+
 def _why_no_submodule(name: str) -> str:
     parent, *parts = name.split(".")
-    places = _places(PathFinder.find_spec(parent)) if parts else []
     for part in parts:
+        places = _places(parent)
         if not places:  # a module that makes others, say
             return ""
-        spec = PathFinder.find_spec(f"{parent}.{part}", places)
-        if spec is None:
-            near = did_you_mean(part, [each.name for each in pkgutil.iter_modules(places)], ALIKE)
-            return f"{parent} has no module {part}{near}"
-        parent, places = spec.name, _places(spec)
+        there = [each.name for each in pkgutil.iter_modules(places)]
+        if part not in there and not any(os.path.isdir(os.path.join(each, part))
+                                         for each in places):
+            return f"{parent} has no module {part}{did_you_mean(part, there, ALIKE)}"
+        parent += f".{part}"
     return ""
 
 
-def _places(spec: ModuleSpec | None) -> list[str]:
+@cache
+def _places(package: str) -> list[str]:
     """The folders of a package's modules; none if that is known only once it is imported."""
-    if spec is None or not spec.submodule_search_locations or not spec.origin:
+    parent, _, name = package.rpartition(".")
+    if parent:
+        folders = [os.path.join(place, name) for place in _places(parent)]
+    else:
+        spec = PathFinder.find_spec(name)
+        folders = list((spec and spec.submodule_search_locations) or [])
+    init = next((path for folder in folders if (path := Path(folder, "__init__.py")).is_file()),
+                None)
+    if init is None:  # a namespace, or in a zip file
         return []
-    text = Path(spec.origin).read_text("utf-8", "replace")
+    text = init.read_text("utf-8", "replace")
     if relay := RELAY.search(text):
-        return [os.path.join(place, spec.name) for place in (*relay[1].split(";"), *sys.path)]
-    return [] if FINDS_ITSELF.search(text) else list(spec.submodule_search_locations)
+        return [os.path.join(place, package) for place in (*relay[1].split(";"), *sys.path)]
+    return [] if FINDS_ITSELF.search(text) else folders
 
 
 def _why_no_message(module: str, name: str) -> str:
     package, _, kind = module.partition(".")
     if kind not in ENDINGS or name.startswith("_") or name in ("", "*"):
         return ""
-    known: set[str] = set()
-    for folder in (Path(place, kind) for place in _places(PathFinder.find_spec(package))):
-        init = folder / "__init__.py"
-        if init.is_file():
-            if not GENERATED.fullmatch(init.read_text("utf-8", "replace")):
-                return ""
-            known |= {path.stem[1:] + ending for path in folder.glob("_[!_]*.py")
-                      for ending in ENDINGS[kind]}
+    known = _messages(package, kind)
     if not known or name in known:
         return ""
     return f"{module} has no message or service {name}{did_you_mean(name, sorted(known), ALIKE)}"
 
 
-def _workspace(folder: Path) -> tuple[Path, bool]:
+@cache
+def _messages(package: str, kind: str) -> frozenset[str]:
+    """The classes made of a package's msg/ or srv/; none if more may be in that module."""
+    known: set[str] = set()
+    for folder in (Path(place, kind) for place in _places(package)):
+        init = folder / "__init__.py"
+        if init.is_file():
+            if not GENERATED.fullmatch(init.read_text("utf-8", "replace")):
+                return frozenset()
+            known |= {path.stem[1:] + ending for path in folder.glob("_[!_]*.py")
+                      for ending in ENDINGS[kind]}
+    return frozenset(known)
+
+
+def workspace_of(folder: Path) -> tuple[Path, bool]:
     """Where the modules of a package may be, and whether its folders are looked through."""
     if not (folder / "package.xml").is_file():
         return folder, False
@@ -114,18 +158,28 @@ def _workspace(folder: Path) -> tuple[Path, bool]:
 @cache
 def _names_below(folder: Path, deep: bool) -> frozenset[str]:
     """The names of modules and packages below a folder, also those that a build will make."""
-    found, seen = set(), set()
-    walk = os.walk(folder, followlinks=True)
-    for place, below, files in itertools.islice(walk, None if deep else 1):
+    found = set()
+    for place, below, files in itertools.islice(walk(folder), None if deep else 1):
+        found |= {*below, os.path.basename(place)}
+        for name in files:
+            stem, _, ending = name.partition(".")
+            if name.endswith(SOURCES):
+                found.add(f"{stem}_pb2" if ending == "proto" else stem)
+            elif name == "package.xml":
+                found.update(NAME.findall(Path(place, name).read_text("utf-8", "replace")))
+            elif name == "CMakeLists.txt":
+                found.update(BUILT.findall(Path(place, name).read_text("utf-8", "replace")))
+    return frozenset(found)
+
+
+def walk(folder: Path) -> Iterator[tuple[str, list[str], list[str]]]:
+    """os.walk with links, each folder once, without hidden ones and virtual environments."""
+    seen = set()
+    for place, below, files in os.walk(folder, followlinks=True):
+        below[:] = sorted(name for name in below if not name.startswith(".")
+                          and not os.path.exists(os.path.join(place, name, "pyvenv.cfg")))
         if os.path.realpath(place) in seen:  # a link to a folder above
             below.clear()
             continue
         seen.add(os.path.realpath(place))
-        if not deep:
-            found.update(below)
-        modules = {name.partition(".")[0] for name in files if name.endswith((".py", ".so"))}
-        if modules or "package.xml" in files:
-            found |= {*modules, os.path.basename(place)}
-        if "package.xml" in files:
-            found.update(NAME.findall(Path(place, "package.xml").read_text("utf-8", "replace")))
-    return frozenset(found)
+        yield place, below, sorted(files)

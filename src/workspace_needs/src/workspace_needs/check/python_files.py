@@ -4,7 +4,7 @@ import ast
 import collections.abc
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,8 +22,8 @@ OF_PYTHON_2 = re.compile("Missing parentheses in call|multiple exception types|l
 # Conditions of what may be for another Python, or for nobody here.
 ANY = re.compile("^(?!.*__name__)", re.DOTALL)
 OF_VERSIONS = re.compile("hasattr|version")
-STARTS = ("main", "init_node", "rospy.init_node")
-BODIES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+INIT_NODE = re.compile(rb"\binit_node\s*\(")
 NEW_NAMES = {
     "numpy": {old: kind.__name__ for old, kind in NUMPY_BUILTINS.items()
               if old not in vars(numpy)}
@@ -44,17 +44,13 @@ class Script:
     fault: Finding | None = None  # why
 
     @property
-    def is_program(self) -> bool:
-        """Whether it does something when it is started, and does not only define."""
-        waiting: list[ast.AST] = [self.tree] if self.tree else []
-        for node in waiting:  # grows
-            if isinstance(node, ast.If) and "__main__" in ast.unparse(node.test):
-                return True
-            if isinstance(node, ast.Call) and ast.unparse(node.func) in STARTS:
-                return True
-            waiting += [child for child in ast.iter_child_nodes(node)
-                        if not isinstance(child, BODIES)]
-        return False
+    def is_node(self) -> bool:
+        """Whether it calls rospy.init_node."""
+        if self.tree is None:
+            return INIT_NODE.search(self.text) is not None
+        return any(isinstance(node, ast.Call) and "init_node" in (
+            getattr(node.func, "attr", ""), getattr(node.func, "id", ""))
+            for node in ast.walk(self.tree))
 
 
 def read_script(path: Path) -> Script:
@@ -74,6 +70,7 @@ def read_script(path: Path) -> Script:
         why = "it is not UTF-8; save it as UTF-8"
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         said = getattr(error, "msg", None) or str(error) or type(error).__name__
+        said = said.removeprefix("f-string: ")
         version = ("this is Python 2, and only Python 3 is here"
                    if OF_PYTHON_2.match(str(said)) else "Python 3 cannot read it")
         line = getattr(error, "lineno", None) or 1
@@ -81,17 +78,18 @@ def read_script(path: Path) -> Script:
     return Script(path, text, fault=problem(str(path), f"line {line}", why))
 
 
-def python_findings(script: Script, folder: Path) -> Iterator[Finding]:
-    """Findings about a script of the package in `folder`, as Python would meet them."""
+def python_findings(script: Script, folder: Path, modules: bool) -> Iterator[Finding]:
+    """Findings about a script of the package in `folder`, as Python would meet them.
+
+    `modules`: also about those that are absent.
+    """
     if script.fault:
         yield script.fault
         return
-    path = script.path
-    # Where else modules are is known once it runs; whoever runs tests has what these need.
-    if not (re.search(rb"sys\.path|addsitedir", script.text)
-            or path.parent.name in ("test", "tests", "doc", "docs")):
-        yield from _absent_modules(script.tree, path, folder)
-    yield from _old_names(script.tree, path)
+    # Where else modules are is known once it runs.
+    if modules and not re.search(rb"sys\.path|addsitedir", script.text):
+        yield from _absent_modules(script.tree, script.path, folder)
+    yield from _old_names(script.tree, script.path)
 
 
 def _parsed(text: bytes, path: Path) -> ast.Module:
@@ -104,33 +102,43 @@ def _parsed(text: bytes, path: Path) -> ast.Module:
     return tree
 
 
+def imports(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, str, int]]:
+    """Module, name in it or "", and line of each import; of `from .a import b` a and b."""
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, "", node.lineno) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield from ((node.module or "", alias.name, node.lineno) for alias in node.names)
+
+
+def at_import(tree: ast.Module) -> Iterator[ast.AST]:
+    """What certainly runs when the file is started or imported."""
+    return _certain(tree, ANY, FUNCTIONS)
+
+
 def _absent_modules(tree: ast.Module, path: Path, folder: Path) -> Iterator[Finding]:
     """A finding for the first place of each that the script cannot do without."""
     places: dict[str, int] = {}
-    for node in _certain(tree, ANY):
-        if isinstance(node, ast.Import):
-            names = [(alias.name, "") for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and not node.level:
-            names = [(node.module, alias.name) for alias in node.names]
-        else:
-            names = []
-        for module, name in names:
-            places.setdefault(why_no_import(module, name, path, folder), node.lineno)
+    nodes = (node for node in at_import(tree) if not getattr(node, "level", 0))
+    for module, name, line in imports(nodes):
+        places.setdefault(why_no_import(module, name, path, folder), line)
     places.pop("", None)
     for why, line in places.items():
         yield Finding(str(path), f"line {line}", ABSENT, why)
 
 
-def _certain(tree: ast.Module, conditions: re.Pattern) -> Iterator[ast.AST]:
-    """The parts in their order, without those that may be for another Python.
+def _certain(tree: ast.Module, conditions: re.Pattern, without: tuple[type, ...] = ()
+             ) -> Iterator[ast.AST]:
+    """The parts in their order, without those that may be for another Python, or in `without`.
 
-    They stand in a try with handlers, in a with that suppresses errors, or behind such a condition.
+    The former stand in a try with handlers, in a with that suppresses errors, or behind such a
+    condition.
     """
     waiting: list[ast.AST] = [tree]
     while waiting:
         node = waiting.pop()
         yield node
-        if not ((isinstance(node, ast.Try) and node.handlers)
+        if not (isinstance(node, without) or (isinstance(node, ast.Try) and node.handlers)
                 or (isinstance(node, ast.With) and "suppress" in ast.unparse(node.items[0]))
                 or (isinstance(node, ast.If | ast.IfExp)
                     and conditions.search(ast.unparse(node.test)))):

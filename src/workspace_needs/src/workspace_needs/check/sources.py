@@ -1,25 +1,32 @@
 """A package's own programs: its scripts, and image transports of C++ nodes."""
 
+import ast
+import math
 import os
 import re
 import shlex
 import shutil
+import time
 from collections.abc import Iterator
-from contextlib import suppress
-from functools import cached_property
 from pathlib import Path
 
 import rospkg
 
-from workspace_needs.check.findings import ABSENT, Finding, problem
+from workspace_needs.check.findings import ABSENT, UNCHECKED, Finding, problem
+from workspace_needs.check.modules import walk
+from workspace_needs.check.packages import (
+    BYTE_ORDER_MARK,
+    FOR_ROSRUN,
+    Package,
+    first_line,
+    has_interpreter,
+    is_python,
+)
 from workspace_needs.check.python_files import Script, python_findings, read_script
 from workspace_needs.workspace import SOURCES
 
-FOR_ROSRUN = ("scripts", "script", "nodes", "node", "bin")  # folders of a package
-HOLDS_PYTHON = re.compile(rb"^(?:from|import|def|class)[ \t]+[\w.]+", re.MULTILINE)
-IMPORTS = re.compile(r"^\s*(?:import|from)\s+(.+)$", re.MULTILINE)
-LONGEST = 256  # bytes that Linux reads of a first line
-BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+FILE_NAME = re.compile(r"[\w.-]+")  # without those of templates, such as {{name}}.py
+HOLDS_PYTHON = (ast.Import, ast.ImportFrom, ast.FunctionDef)
 PYTHON = "#!/usr/bin/env python3"
 # With bounds, so that the time is linear.
 HINTS = re.compile(rb"\bTransportHints\b[^;\n\"]{0,200}\(\s{0,200}\"(\w+)\"")
@@ -28,69 +35,29 @@ TRANSPORTS = {"compressed": "compressed_image_transport", "theora": "theora_imag
 LARGEST = 1 << 20  # bytes of a source that is searched
 
 
-class Package:
-    """What matters of the package that a script is in; each file is read once."""
-
-    def __init__(self, folder: Path):
-        self.folder = folder
-
-    @cached_property
-    def relayed(self) -> frozenset[str]:
-        """The scripts that CMakeLists.txt hands to catkin_install_python: catkin starts them."""
-        cmake = self.folder / "CMakeLists.txt"
-        text = cmake.read_text("utf-8", "replace") if cmake.is_file() else ""
-        calls = re.findall(r"catkin_install_python\s*\(([^)]*)\)", re.sub("#.*", "", text))
-        return frozenset(word for call in calls for word in re.split(r'[\s/"]+', call))
-
-    @cached_property
-    def _imported(self) -> frozenset[str]:
-        """Each word of the import lines of its Python files."""
-        lines = (line for path in self.folder.rglob("*.py") if path.is_file()
-                 for line in IMPORTS.findall(path.read_text("utf-8", "replace")))
-        return frozenset(word for line in lines for word in re.findall(r"\w+", line))
-
-    def is_script(self, path: Path) -> bool:
-        """Whether it is no module: where all files are executable, as on Windows' disks, both are.
-        """
-        module = ((path.parent / "__init__.py").exists()
-                  and "src" in path.relative_to(self.folder).parts)
-        return is_python(path) and path.name not in ("setup.py", "__init__.py") and not module
-
-    def is_for_rosrun(self, path: Path) -> bool:
-        """Whether a script is meant to be started by its name, and nobody imports it."""
-        if not (self.folder / "package.xml").is_file():
-            return False
-        place = path.relative_to(self.folder).parts[:-1]
-        if not (place in ((), ("src",)) or place[0] in FOR_ROSRUN) or (
-                path.suffix == ".py" and not self.is_script(path)):
-            return False
-        return path.stem not in self._imported
-
-
-def program_findings(folder: Path) -> Iterator[Finding]:
+def program_findings(folder: Path, until: float = math.inf) -> Iterator[Finding]:
     """Findings about programs below `folder` that will not start, or end with an exception.
 
-    Also about modules that they may import; what these lack is named where it is met first.
+    Also about modules that others import. `until`: a time of time.monotonic().
     """
     package = Package(folder)
-    absent: set[str] = set()
-    for place, below, files in os.walk(folder):
-        below[:] = sorted(name for name in below if not name.startswith(".")
-                          and not os.path.exists(os.path.join(place, name, "pyvenv.cfg")))
-        for path in (Path(place, name) for name in sorted(files)):
-            if not path.is_file():  # a pipe, which nobody may write into
-                continue
-            if path.suffix in SOURCES:
-                yield from transport_findings(path)
-            elif path.name != "setup.py" and (  # which the build reads
-                    path.suffix == ".py" or os.access(path, os.X_OK)
-                    or path.name in package.relayed
-                    or (_first_line(path).startswith(b"#!") and package.is_for_rosrun(path))):
-                for found in script_findings(path, package):
-                    if found.how not in absent or package.is_for_rosrun(path):
-                        yield found
-                    if found.status == ABSENT:
-                        absent.add(found.how)
+    paths = (Path(place, name) for place, _, files in walk(folder) for name in files)
+    for path in paths:
+        if time.monotonic() > until:
+            yield Finding(str(folder), "scripts", UNCHECKED,
+                          f"the time is over; {path.name} and those after it are not read")
+            return
+        if not path.is_file() or not FILE_NAME.fullmatch(path.name) or (  # a pipe blocks
+                package.is_other(path) and not _is_for_rosrun(path, folder)):
+            continue
+        if path.suffix in SOURCES:
+            yield from transport_findings(path)
+        elif path.name != "setup.py" and (has_interpreter(path) or is_python(path)):
+            yield from script_findings(path, package)
+
+
+def _is_for_rosrun(path: Path, folder: Path) -> bool:
+    return os.access(path, os.X_OK) and path.relative_to(folder).parts[0] in FOR_ROSRUN
 
 
 def transport_findings(path: Path) -> Iterator[Finding]:
@@ -125,56 +92,52 @@ def script_findings(path: Path, package: Package | None = None) -> Iterator[Find
 
     `package`: that it is in, given by those who did not name the script itself.
     """
-    named, package = package is None, package or Package(_package_of(path))
-    script = read_script(path) if is_python(path) else Script(path)
-    if path.name not in package.relayed:
-        yield from _start_findings(script, package)
-    if is_python(path):
-        if not path.stat().st_size and package.is_script(path) and (
-                named or os.access(path, os.X_OK) or path.name in package.relayed):
-            yield problem(str(path), "line 1", "it is empty, so that nothing starts")
-        yield from python_findings(script, package.folder)
+    try:
+        yield from list(_script_findings(path, package or Package(_package_of(path)),
+                                         named=package is None))
+    except Exception as error:  # of one script, which must not end the others
+        yield Finding(str(path), "file", UNCHECKED,
+                      f"it could not be checked: {type(error).__name__}: {error}")
 
 
-def is_script(path: Path) -> bool:
-    """Whether a file is a script, by its first line, its name, or the Python in it."""
-    return _first_line(path).removeprefix(BYTE_ORDER_MARK).startswith(b"#!") or is_python(path)
+def _script_findings(path: Path, package: Package, named: bool) -> Iterator[Finding]:
+    python = is_python(path) or (named and holds_python(path))
+    script = read_script(path) if python else Script(path)
+    # Whether others import it, which takes long to find out, matters only for those not named.
+    starts = named and has_interpreter(path) and os.access(path, os.X_OK)
+    program = starts or package.is_program(script)
+    if (named or program) and not package.is_relayed(path):
+        yield from _start_findings(path, package.is_one and program, program and python)
+    if not python:
+        return
+    if not path.stat().st_size and (named or program) and path.name != "__init__.py":
+        yield problem(str(path), "line 1", "it is empty, so that nothing starts")
+    modules = program or (named and not package.is_other(path))
+    found = list(python_findings(script, package.folder, modules))
+    if found and (named or program or package.is_needed(path)):
+        yield from found
 
 
-def is_python(path: Path) -> bool:
-    """Whether Python is to read a file."""
-    line = _first_line(path).removeprefix(BYTE_ORDER_MARK)
-    if line.startswith(b"#!"):
-        return b"python" in line
-    if path.suffix:
-        return path.suffix == ".py"
-    with suppress(OSError), path.open("rb") as file:
-        text = file.read(LARGEST)
-        return b"\0" not in text and HOLDS_PYTHON.search(text) is not None
-    return False
+def holds_python(path: Path) -> bool:
+    """Whether a file without suffix and first line is Python, which data may be read as, too."""
+    if path.suffix or has_interpreter(path):
+        return False
+    tree = read_script(path).tree
+    return tree is not None and any(isinstance(node, HOLDS_PYTHON) for node in ast.walk(tree))
 
 
-def _start_findings(script: Script, package: Package) -> Iterator[Finding]:
+def _start_findings(path: Path, for_rosrun: bool, for_python: bool) -> Iterator[Finding]:
     """A finding if the script's first line is wrong, and one if rosrun does not find it."""
-    path, line = script.path, _first_line(script.path)
-    executable = os.access(path, os.X_OK)
-    for_rosrun = ((line.startswith(b"#!") or script.is_program) and package.is_for_rosrun(path))
-    started = for_rosrun or (executable and package.is_script(path))
-    if line and (why := _fault(line.removesuffix(b"\n"), path, started)):
+    line, executable = first_line(path), os.access(path, os.X_OK)
+    if for_rosrun and for_python and not executable and not has_interpreter(path):
+        yield problem(str(path), "line 1", f"rosrun does not find it: chmod +x "
+                      f"{shlex.quote(str(path))}, and write {PYTHON} as its first line")
+        return
+    if line and (why := _fault(line.removesuffix(b"\n"), path, for_python)):
         yield problem(str(path), "line 1", why)
     if for_rosrun and not executable:
         yield problem(str(path), "line 1", "it is not executable, so that rosrun and roslaunch do "
                       f"not find it; type: chmod +x {shlex.quote(str(path))}")
-
-
-def _first_line(path: Path) -> bytes:
-    """What Linux reads of a first line; nothing if that has no end or the file cannot be read."""
-    try:
-        with path.open("rb") as file:
-            line, newline, _ = file.read(LONGEST).partition(b"\n")
-    except OSError:
-        return b""
-    return line + newline if newline else b""
 
 
 def _package_of(path: Path) -> Path:

@@ -34,7 +34,7 @@ def workspace_findings(path: Path, arguments: list[str], run_commands: bool) -> 
     check = _open(verdicts, arguments, run_commands)
     until = time.monotonic() + LONGEST
     return [finding for verdict in verdicts
-            for finding in (*_of_package(verdict, path), *program_findings(verdict.folder),
+            for finding in (*_of_package(verdict, path), *program_findings(verdict.folder, until),
                             *_of_files(verdict, files[verdict.name], check, until))]
 
 
