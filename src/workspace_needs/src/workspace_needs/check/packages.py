@@ -4,6 +4,7 @@ import ast
 import os
 import re
 from collections.abc import Iterable
+from contextlib import suppress
 from functools import cache, cached_property
 from pathlib import Path
 
@@ -117,8 +118,8 @@ def _scripts_below(folder: Path) -> dict[Path, bytes]:
     found = {}
     for place, _, files in walk(folder):
         for path in (Path(place, name) for name in files):
-            if path.is_file() and path.suffix in (".py", "") and is_python(path):
-                with path.open("rb") as file:
+            if path.suffix in (".py", "") and os.path.isfile(path) and is_python(path):
+                with suppress(OSError), path.open("rb") as file:
                     found[path] = file.read(LARGEST)
     return found
 

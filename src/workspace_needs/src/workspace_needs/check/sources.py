@@ -47,7 +47,7 @@ def program_findings(folder: Path, until: float = math.inf) -> Iterator[Finding]
             yield Finding(str(folder), "scripts", UNCHECKED,
                           f"the time is over; {path.name} and those after it are not read")
             return
-        if not path.is_file() or not FILE_NAME.fullmatch(path.name) or (  # a pipe blocks
+        if not os.path.isfile(path) or not FILE_NAME.fullmatch(path.name) or (  # a pipe blocks
                 package.is_other(path) and not _is_for_rosrun(path, folder)):
             continue
         if path.suffix in SOURCES:
