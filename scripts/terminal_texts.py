@@ -102,7 +102,8 @@ OF_TABLES = (
 OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off",
                "{0} points", "{0} points, {1}", "{0}; lost {1} points: {2}", "exit code {0}",
                "closed", "stalled", "time is up", "ended early",
-               "not allowed", "not run", "fault", "preview: {0}", "next:")
+               "subscribed to {0}", "advertised {0}", "made {0}", "not allowed", "not run",
+               "fault", "preview: {0}", "next:")
 # Of an exercise's findings, whose values may be a word.
 OF_FINDINGS = ("pass  {0}", "FAIL  {0}", "{0}, wanted {1}", "at least {0}", "at most {0}",
                "messages", "there", "missing", "drives", "stands", "{0} poses")
@@ -112,7 +113,7 @@ OF_LISTS = ("one of {0}", "line {0}", "line {0}: {1}", "line {0}, column {1}", "
             "write &amp; for &", "write &gt; for >",
             "it must be a whole number of pixels, 1 or more", "link of model {0}",
             "joint of model {0}", "{0} when evaluating expression {1}", "map on {0}",
-            "laser scans on {0}", "there are: {0}",
+            "laser scans on {0}", "there are: {0}", "is {0} meant?",
             'not yet: "{0}" passed to lookupTransform argument {1} does not exist.')
 # Of missing_headers.cmake.
 OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its place: {3}",
@@ -121,7 +122,7 @@ OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its pla
 # Values of sentences, which may be names elsewhere.
 OF_VALUES = ("none", "unknown", "a number", "this user", "parent link", "child link", "link",
              "joint", "model", "sensor", "function call", "function definition", "class definition",
-             "literal", "expression", "attribute")
+             "literal", "expression", "attribute", "simulated clock /clock")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
             "world {0} ({1} models)", "model {0} ({1} links, {2} joints)", "the text",
             "{0}. Arg xml is {1}",  # roslaunch's

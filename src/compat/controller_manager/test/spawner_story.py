@@ -114,8 +114,8 @@ class SpawnerStory(unittest.TestCase):
         spawner = self.spawner("c9", "c7", "c1")
         spawner.until_says("Started controllers: c1")
         self.assertIn("Failed to load c9: parameter /arm/c9/type is not set", spawner.said)
-        self.assertIn("there is no controller type effort_controllers/JointEfortController. "
-                      f"Did you mean {TYPE}?", spawner.said)
+        self.assertIn("there is no controller type effort_controllers/JointEfortController; "
+                      f"is {TYPE} meant?", spawner.said)
         self.assertEqual(spawner.end(signal.SIGINT), 0)
 
     def test_a_joint_claimed_twice(self):

@@ -43,14 +43,14 @@ def test_a_controller_with_a_slash_in_its_name():
 def test_a_mistyped_name():
     parameters = ["/left_wheel/type", "/arm/type", "/left_wheel/pid/type"]
     line = diagnosis.not_configured("left_whel", "/", parameters)
-    assert line == ("parameter /left_whel/type is not set; in / there are: arm, left_wheel. "
-                    "Did you mean left_wheel?")
+    assert line == ("parameter /left_whel/type is not set; in / there are: arm, left_wheel; "
+                    "is left_wheel meant?")
 
 
 def test_a_mistyped_name_with_a_slash():
     for name in ("arm/j2", "/arm/j2"):
         line = diagnosis.not_configured(name, "/lab", ["/lab/arm/j1/type", "/lab/x/type"])
-        assert line.endswith("in /lab there are: arm/j1. Did you mean arm/j1?")
+        assert line.endswith("in /lab there are: arm/j1; is arm/j1 meant?")
     line = diagnosis.not_configured("arm/j2", "/arm", ["/arm/j1/type"])
     assert line == "parameter /arm/arm/j2/type is not set; in /arm there are: j1"
 
@@ -64,8 +64,8 @@ def test_a_namespace_instead_of_a_controller():
 def test_unknown_type():
     types = ["effort_controllers/JointPositionController", "diff_drive_controller/DiffDrive"]
     assert diagnosis.unknown_type("effort_controllers/JointPosController", types) == (
-        "there is no controller type effort_controllers/JointPosController. "
-        "Did you mean effort_controllers/JointPositionController?")
+        "there is no controller type effort_controllers/JointPosController; "
+        "is effort_controllers/JointPositionController meant?")
     assert diagnosis.unknown_type("x", types).endswith("list-types` shows those there are")
 
 

@@ -189,7 +189,8 @@ def unpack(source: Path, folder: Path) -> None:
         finally:
             shutil.rmtree(folder, ignore_errors=True)
         why = done.stdout.decode(errors="replace").strip()
-        why = why or (TOO_MUCH if done.returncode < 0 else "cannot be unpacked")  # < 0: a signal
+        if not why:  # below 0: a signal
+            why = TOO_MUCH if done.returncode < 0 else "the archive cannot be unpacked"
         raise UnpackError(f"{file_name(source.name)}: {why}")
 
 
@@ -209,7 +210,7 @@ def _unpack(source: Path, folder: Path) -> None:
     # zipfile raises NotImplementedError for unknown compression, RuntimeError for a password.
     except (zipfile.BadZipFile, tarfile.TarError, zlib.error, lzma.LZMAError, EOFError,
             NotImplementedError, RuntimeError, OSError, ValueError) as error:
-        raise UnpackError(f"cannot be unpacked: {error}") from error
+        raise UnpackError(f"the archive cannot be unpacked: {error}") from error
 
 
 def _write(members: Iterator[_Member], folder: Path) -> None:

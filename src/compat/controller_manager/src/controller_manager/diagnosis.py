@@ -9,6 +9,7 @@ from controller_manager_msgs.msg import ControllerState
 
 from controller_manager.client import ManagerClient
 
+ALIKE = 0.75  # of difflib
 SEE_LOG = "the manager's own error line, in the simulator's terminal, says why"
 
 
@@ -60,16 +61,16 @@ def not_configured(name: str, namespace: str, parameters: Collection[str]) -> st
     others = _beside(name, namespace, parameters)
     if not others:
         return f"{reason}, nor is any controller's in {namespace}: load the YAML file, {load}"
-    close = difflib.get_close_matches(name, others, 1)
+    close = difflib.get_close_matches(name, others, 1, ALIKE)
     return f"{reason}; in {namespace} there are: {_listing(others)}" + (
-        f". Did you mean {close[0]}?" if close else "")
+        f"; is {close[0]} meant?" if close else "")
 
 
 def unknown_type(kind: str, types: Sequence[str]) -> str:
     """The line for a type that the manager does not know."""
-    close = difflib.get_close_matches(kind, types, 1)
+    close = difflib.get_close_matches(kind, types, 1, ALIKE)
     return f"there is no controller type {kind}" + (
-        f". Did you mean {close[0]}?" if close
+        f"; is {close[0]} meant?" if close
         else ": `rosrun controller_manager controller_manager list-types` shows those there are")
 
 

@@ -180,5 +180,5 @@ def _watch_clock(missing_data: MissingData) -> None:
 
 def _why_clock_stands(ticks: rospy.Subscriber) -> str:
     advice = ("its publisher is silent, is the simulation paused?" if is_published(ticks)
-              else "nobody publishes it; start the simulator.")
-    return f"{advice} Or rosparam set use_sim_time false and start again"
+              else "nobody publishes it; start the simulator in another terminal.")
+    return f"{advice} Without one, set use_sim_time to false where it is set to true"
