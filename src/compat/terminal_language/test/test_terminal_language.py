@@ -82,7 +82,7 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
     ("mark: --submissions (SUBMISSIONS=) is missing: a folder of submissions",
      "mark: 缺少 --submissions（SUBMISSIONS=）：放作业的文件夹"),
     ("legs cannot be built: a: nobody has that name; is b meant? (CMakeLists.txt asks for it)",
-     "legs 不能编译：a：没有谁有这个名字；是不是 b？（CMakeLists.txt 需要它）"),
+     "legs 不能编译：a：没有叫这个名字的包；是不是想写 b？（CMakeLists.txt 需要它）"),
     ("a: it will be without: not in Debian; gmapping makes a map from the same topics (rosrun "
      "gmapping slam_gmapping), hector_mapping without odometry (package.xml asks for it)",
      "a: 它会缺少：Debian 里没有；gmapping 用同样的话题建图（rosrun gmapping slam_gmapping），"
