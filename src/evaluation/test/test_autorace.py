@@ -101,3 +101,4 @@ def test_the_light_is_waited_for_in_the_simulator(tmp_path):
     assert [each["mission"] for each in drove["scores"]] == ["traffic_light"]
     assert drove["scores"][0]["contacts"] == [] and drove["time"] < 40.0
     assert (tmp_path / "out" / "autorace.png").stat().st_size > 10_000
+    assert (tmp_path / "out/drives/traffic_light-0.html").stat().st_size > 1_000_000

@@ -82,4 +82,5 @@ def test_it_drives_through_a_hall(tmp_path, monkeypatch):
     assert done.returncode == 0, done.stdout + done.stderr
     (found,) = AvoidTrial().from_values(json.loads((tmp_path / "report.json").read_text()))
     assert found.outcome == drive.REACHED and found.unanswered == 0
+    assert (tmp_path / f"halls/hall-{QUICK}.html").stat().st_size > 1_000_000
     assert (tmp_path / "paths.png").exists() and asdict(found)["path"][-1][0] > 8.0

@@ -28,6 +28,7 @@ from evaluation.autorace_judge import (
 from evaluation.command_line import Parser, one_of
 from evaluation.picture import CAR, FAINT, LAPS, LINE, WHITE, legend, map_sheet, pixels, write_png
 from evaluation.report import cell, mean, table
+from evaluation.run_page import begin_recording, write_run_page
 from evaluation.trial import Case, Trial
 from run_session import simulator
 from run_session.launch import Launched
@@ -58,6 +59,8 @@ class AutoraceStack:
         self.samples = []
         self._log = log
         rospy.set_param("/gazebo/state_log", str(log))
+        self._recording = log.with_suffix(".recording")
+        begin_recording(self._launched.master_uri, self._recording)
         self._child = self._launched.start(log.stem, [
             "roslaunch", "learning_autorace", "autorace.launch", f"drive:={script}", "gui:=false",
             "paused:=true", "real_time_factor:=0", "lockstep:=/cmd_vel", "lockstep_timeout:=20",
@@ -78,6 +81,7 @@ class AutoraceStack:
     def end(self) -> dict[str, float]:
         """End the drive; returns the touched models and the times of first contact, s."""
         self._launched.end(self._child)
+        write_run_page(self._recording, self._log.with_suffix(".html"), self._log.stem)
         touched: dict[str, float] = {}
         for line in self._log.read_text(encoding="utf-8").splitlines():
             values = json.loads(line)
@@ -165,7 +169,7 @@ class RaceTrial(Trial):
     program = "autorace"
     does = "Drive AutoRace 2020 by the lessons of learning_autorace, and score each mission."
     good = "every mission passed in every drive"
-    writes = "report.json, report.html, autorace.png and the simulator's logs"
+    writes = "report.json, report.html, autorace.png, the simulator's logs and replays"
     result, derived = DriveResult, ("passed",)
 
     def add_options(self, parser: Parser) -> None:

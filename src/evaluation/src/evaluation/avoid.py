@@ -18,6 +18,7 @@ from learning_laser import hall
 from evaluation.command_line import Parser, one_of
 from evaluation.picture import write_tiles
 from evaluation.report import cell, mean, table
+from evaluation.run_page import begin_recording, write_run_page
 from evaluation.trial import Case, Trial
 from run_session.failure import RunError
 from run_session.files import Tail, find_package
@@ -31,6 +32,7 @@ LIMIT = 120.0  # s, simulated
 TOPICS = ("/scan", "/cmd_vel")
 REACHED, CONTACT, LATE = "reached", "contact", "late"
 TILE = (5.0, 1.9)  # inches
+RECORDING = ".recording"  # ending of a hall's, until its page is made
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ class AvoidTrial(Trial):
     program = "avoid"
     does = "Drive by laser through halls with columns."
     good = "all goals reached without a contact"
-    writes = "report.json, report.html, paths.png and worlds"
+    writes = "report.json, report.html, paths.png, worlds and a replay of each"
     result, shared = DriveResult, ("avoider",)
 
     def add_options(self, parser: Parser) -> None:
@@ -90,9 +92,11 @@ class AvoidTrial(Trial):
         launched = session.launched("robot", self.options.avoider)
         bring_up(launched, world, case.seed, self.options.avoider, log)
         try:
-            return case, watch(launched, log)
+            states = watch(launched, log)
         finally:
             session.family.stop()
+        write_run_page(world.with_suffix(RECORDING), world.with_suffix(".html"), case.name)
+        return case, states
 
     def judge(self, record: tuple[Case, list[dict]]) -> DriveResult:
         case, states = record
@@ -115,6 +119,7 @@ class AvoidTrial(Trial):
 def bring_up(launched: Launched, world: Path, seed: int, avoider: str, state_log: Path) -> None:
     """Start all, wait until all nodes are connected, and unpause."""
     launched.start_roscore()
+    begin_recording(launched.master_uri, world.with_suffix(RECORDING))
     launched.start("roslaunch", [
         "roslaunch", "evaluation", "avoid.launch", f"world_name:={world}", f"seed:={seed}",
         f"avoider:={avoider}", f"state_log:={state_log}", "paused:=true", "real_time_factor:=0"])

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
-import rosgraph
 from node_basics.ending import interruptible
 from sim_viewer.replay_page import Curve
 from terminal_language import translated
@@ -18,7 +17,7 @@ from terminal_language import translated
 from evaluation.command_line import NOT_PASSED, PASSED, Parser, run_program
 from evaluation.film import FilmFile
 from evaluation.lap import LapScorer, Sample, fingerprint
-from evaluation.run_page import PARAMETER, RECORDING, RUN_PAGE, write_run_page
+from evaluation.run_page import RECORDING, RUN_PAGE, begin_recording, write_run_page
 from run_session.course_file import CourseFile
 from run_session.failure import RunError
 from run_session.launch import Launched
@@ -134,8 +133,7 @@ def run_live(drive: LiveDrive) -> int:
                 drive.progress.status("starting roscore")
                 launched.start_roscore()
                 if drive.options.video:
-                    rosgraph.Master(f"/{drive.program}", launched.master_uri).setParam(
-                        PARAMETER, str(drive.out / LOG / RECORDING))
+                    begin_recording(launched.master_uri, drive.out / LOG / RECORDING)
                 if why := launched.why_not_callers:
                     drive.progress.say(why[0] % why[1:])
                 drive.progress.say(

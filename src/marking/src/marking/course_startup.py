@@ -12,7 +12,7 @@ import rosgraph
 import rospy
 from gazebo_msgs.srv import GetWorldProperties
 
-from evaluation.run_page import PARAMETER, RECORDING
+from evaluation.run_page import RECORDING, begin_recording
 from marking import conduct, film, guard
 from marking.case_files import CaseFile
 from marking.rules import Rules
@@ -42,8 +42,7 @@ class CourseStartup:
         launched.start_roscore()
         self._master = rosgraph.Master(ME, launched.master_uri)
         self._master.setParam("/gazebo/state_log", str(state_log))
-        (folder / RECORDING).unlink(missing_ok=True)  # of an earlier try
-        self._master.setParam(PARAMETER, str(folder / RECORDING))
+        begin_recording(launched.master_uri, folder / RECORDING)
         launched.start("roslaunch", ["roslaunch", *self._course.launch, *case.launch_args])
         launched.wait_for("the course", self._is_ready, STARTUP_LIMIT, pause=LOOK_PERIOD)
         self.film = self._start_film(folder) if case.film else None

@@ -129,6 +129,6 @@ document.body.append(
   element("main", { class: "replay" },
     element("div", {}, view, element("div", { class: "row player" },
       player.button, player.slider, player.text, player.speed), curves),
-    side, element("pre", { class: "card figures", text: run.text })));
+    side, ...(run.text ? [element("pre", { class: "card figures", text: run.text })] : [])));
 mount(view, player);
 player.show(first);
