@@ -130,10 +130,7 @@ def read_parameters(given):
 
 
 def main():
-    try:
-        rospy.init_node("lane_keeping")
-    except rospy.ROSInitException:
-        sys.exit(1)  # Ctrl-C while waiting for the master, about which rospy has logged a line
+    rospy.init_node("lane_keeping")
     given = rospy.get_param("~", {})
     for key in load_command_line_node_params(sys.argv):
         rospy.delete_param(f"~{key}")  # _key:=value must not affect the next run
