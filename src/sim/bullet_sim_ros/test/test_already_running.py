@@ -62,14 +62,15 @@ def test_who_answers_at_the_address(node, expected):
         assert sign(uri) is expected
 
 
-@pytest.mark.parametrize(("terminal", "pid", "expected"), [
-    (None, os.getpid(), os.getpid()), ("/dev/pts/3", os.getpid(), None),
-    (None, os.getppid(), None)])  # it has no such port: a number of another machine
-def test_what_ends_a_node_without_a_terminal(monkeypatch, terminal, pid, expected):
+@pytest.mark.parametrize(("terminal", "its_pid", "ends"), [
+    (None, os.getpid, True), ("/dev/pts/3", os.getpid, False),
+    (None, os.getppid, False)])  # it has no such port: a number of another machine
+def test_what_ends_a_node_without_a_terminal(monkeypatch, terminal, its_pid, ends):
+    pid = its_pid()
     monkeypatch.setattr(psutil.Process, "terminal", lambda _: terminal)
     with (serving(xmlrpc_server(getPid=lambda _: [1, "", pid])) as node,
           serving(xmlrpc_server(lookupNode=lambda _caller, _node: [1, "", node])) as master):
-        assert to_kill(master, NAME) == expected
+        assert to_kill(master, NAME) == (pid if ends else None)
 
 
 def test_a_machine_whose_name_is_not_known_may_have_it():
