@@ -13,7 +13,7 @@ GUARD = "/share/bullet_sim_ros/scripts/unless_running true"
     (GUARD, "no such command", ValueError),
     ("/share/xacro/xacro /share/turtlebot3_wafle.urdf.xacro", "returned with code [3]", SystemExit),
     ("rosrun xacro xacro.py turtlebot3_wafle.urdf.xacro", "returned with code [3]", SystemExit),
-    ("/share/turtlebot3_slam/nodes/not_this_method karto", "returned with code [1]", SystemExit),
+    ("/share/turtlebot3_slam/scripts/not_this_method karto", "returned with code [1]", SystemExit),
     ("/share/xacro/xacro robot.xacro", "returned with code [2]", ValueError),
     ("xacro robot.xacro", "returned with code [1]", ValueError),
     ("mine.py xacro robot.urdf", "returned with code [3]", ValueError),
