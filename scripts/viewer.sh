@@ -5,6 +5,11 @@
 failure_code=2
 trap 'exit 0' INT  # Ctrl-C is how it is meant to end: make has nothing to report
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+for word in "$@"; do
+  if [[ $word == port:=* ]] && ! [[ ${word#port:=} =~ ^[1-9][0-9]{0,4}$ && ${word#port:=} -le 65535 ]]; then
+    fail $"port is ${word#port:=}; give one from 1 to 65535, such as PORT=8080"
+  fi
+done
 "$root/scripts/setup.sh" || exit 2
 enter_workspace
 end_with_terminal
@@ -13,9 +18,6 @@ for word in "$@"; do
   if [[ $word == rviz:=?* ]]; then
     word=rviz:=$(realpath -m -- "${word#rviz:=}")  # the node runs in another folder
     rosrun sim_viewer rviz_page --check -d "${word#rviz:=}" || exit 2
-  fi
-  if [[ $word == port:=* ]] && ! [[ ${word#port:=} =~ ^[1-9][0-9]{0,4}$ && ${word#port:=} -le 65535 ]]; then
-    fail $"port is ${word#port:=}; give one from 1 to 65535, such as PORT=8080"
   fi
   arguments+=("$word")
 done

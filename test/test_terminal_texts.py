@@ -107,11 +107,21 @@ def test_the_scripts_follow_the_locale(environment: dict[str, str], word: str) -
     ("course LAP=2", "make course has no option LAP=; is LAPS meant?", "是不是想输入 LAPS？"),
     ("course FAST=maybe", "FAST=: write 1 or 0, or leave it out", "FAST=：请写 1 或 0，或者不写"),
     ("lane FAST=' PEOPLE=`", "FAST= PEOPLE=: write 1 or 0, or leave it out", "请写 1 或 0"),
+    ("course SEED=\"x", 'SEED="x: write a whole number, or leave it out', "请写整数"),
+    ("navigate PACE=-1", "PACE=-1: write a number, such as 2 or 0.5", "请写数字"),
+    ("avoid WORKERS='", "WORKERS=': write a whole number", "请写整数"),
     ("mark WORKER=2", "mark has no option WORKER=; is WORKERS meant?", "是不是想输入 WORKERS？"),
     ("zzz", "make has no command zzz; `make` alone lists them", "单独输入 `make` 会列出所有命令")])
 def test_make_names_the_nearest_command_and_option(words: str, english: str, chinese: str) -> None:
     assert english in said(["make", *words.split()])
     assert chinese in said(["make", *words.split()], LANGUAGE="zh_CN", LC_ALL="C.UTF-8")
+
+
+@pytest.mark.parametrize(("word", "told"), [
+    ("PEOPLE=0 1", "PEOPLE=: write 1 or 0"), ("SEED=1 2", "SEED=1 2: write a whole number"),
+    ("METHOD=a\"b' $$(id)", "no method 'a\"b' $(id)' (METHOD=)")])
+def test_a_value_reaches_a_script_as_it_was_typed(word: str, told: str) -> None:
+    assert told in said(["make", "lane", word])
 
 
 def test_make_lists_what_a_learner_types_first() -> None:

@@ -249,9 +249,11 @@ def master_chosen(**given: str) -> tuple[list[str], str]:
     return last.split(","), "\n".join(said)
 
 
-@pytest.mark.parametrize("port", ["0", "abc", "65536", "8080x"])
-def test_a_port_that_is_none_is_told_of_before_the_course_starts(port):
-    done = subprocess.run([ROOT / "scripts/viewer.sh", f"port:={port}"], text=True,
+@pytest.mark.parametrize("port", ["0", "-1", "abc", "65536", "8080x", 'a" b'])
+def test_a_port_that_is_none_is_told_of_before_setup(port, tmp_path):
+    for name in ("viewer.sh", "common.sh"):  # and no setup.sh
+        (tmp_path / name).write_bytes((ROOT / "scripts" / name).read_bytes())
+    done = subprocess.run(["bash", tmp_path / "viewer.sh", f"port:={port}"], text=True,
                           capture_output=True, timeout=LIMIT, check=False)
     assert done.returncode == 2
     assert done.stderr == f"viewer: port is {port}; give one from 1 to 65535, such as PORT=8080\n"
