@@ -58,11 +58,16 @@ def window(tool: str, program: str, arguments: Sequence[str]) -> int:
 
 
 def main(tool: str, arguments: Sequence[str]) -> int:
-    """Print the line. A node of a launch file then waits, lest a `required` one ends the launch."""
+    """Print the line; returns 1, as there is no window.
+
+    A node of a launch file waits until it is ended, lest a `required` one ends the launch; that it
+    was told to end is no failure, so it returns 0.
+    """
     print(line_for(tool, arguments), file=sys.stderr, flush=True)
-    if any(word.startswith("__name:=") for word in arguments):
-        ended = threading.Event()
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda *_: ended.set())
-        ended.wait()
+    if not any(word.startswith("__name:=") for word in arguments):
+        return 1
+    ended = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: ended.set())
+    ended.wait()
     return 0
