@@ -13,9 +13,9 @@ import time
 from importlib.machinery import PathFinder
 
 BRIDGE = "cv_bridge.boost.cv_bridge_boost"
-AMENDED = {BRIDGE, "cv2", "joint_state_publisher", "numpy", "roslaunch.loader", "rospy.client",
-           "rospy.impl.tcpros_service", "rospy.topics", "tkinter", "yaml"}
-LAUNCHERS = {"roslaunch", "roscore", "rostest"}
+AMENDED = {BRIDGE, "catkin_pkg.packages", "cv2", "joint_state_publisher", "numpy",
+           "roslaunch.loader", "rospy.client", "rospy.impl.tcpros_service", "rospy.topics",
+           "tkinter", "yaml"}
 
 
 class Watch:
@@ -25,7 +25,7 @@ class Watch:
 
     @classmethod
     def find_spec(cls, name, _path=None, _target=None):
-        if name == "rosclean" and os.path.basename(sys.argv[0]) in LAUNCHERS:
+        if name == "rosclean" and is_launcher():
             take_own_distutils()
         if name not in cls.waited_for:
             return None
@@ -42,12 +42,16 @@ class Watch:
     def load(load, module):
         load(module)
         for amend in (put_old_names_back, give_windows, hasten_cv_bridge, tell_of_waiting,
-                      end_refused_launch):
+                      end_launch):
             try:
                 amend(module)
             except Exception as error:  # a script that needs none of it must not fail here
                 print(f"headless_highgui: {module.__name__} is not amended: {error}",
                       file=sys.stderr)
+
+
+def is_launcher():
+    return os.path.basename(sys.argv[0]) in ("roslaunch", "roscore", "rostest")
 
 
 def take_own_distutils():
@@ -88,11 +92,15 @@ def tell_of_waiting(module):
         waiting.AMENDED[module.__name__](module)
 
 
-def end_refused_launch(module):
+def end_launch(module):
     if module.__name__ == "roslaunch.loader":
         from headless_highgui.launch_end import amend_loader
 
         amend_loader(module)
+    elif module.__name__ == "catkin_pkg.packages" and is_launcher():
+        from headless_highgui.launch_end import amend_packages
+
+        amend_packages(module)
 
 
 def watch_standard():
@@ -138,11 +146,16 @@ def choose_language():
 
 
 def end_quietly():
-    """Let Ctrl-C while a program of ours imports end it without a traceback, as later on."""
+    """Let Ctrl-C end our programs and roslaunch without a traceback from their start, as later on.
+
+    roslaunch may be at its imports, or waiting for a program that a <param> names.
+    """
     shown = sys.excepthook
 
     def show(kind, *rest):
         if kind is KeyboardInterrupt:
+            if is_launcher():
+                return None
             try:
                 from terminal_language.wanted import is_ours
             except ImportError:

@@ -1,10 +1,19 @@
-"""roslaunch ends by a refusal of our programs alone; other faults stay its own."""
+"""roslaunch ends by a refusal of our programs alone, or by Ctrl-C; other faults stay its own."""
 
+import os
+import signal
+import subprocess
+import sys
+import time
 from types import SimpleNamespace
 
 import pytest
-from headless_highgui.launch_end import amend_loader
+from catkin_pkg import packages
+from headless_highgui.launch_end import amend_loader, amend_packages
 
+pytestmark = pytest.mark.processes
+
+LIMIT = 60.0  # s
 GUARD = "/share/bullet_sim_ros/scripts/unless_running true"
 
 
@@ -37,3 +46,45 @@ def test_a_value_is_passed_on():
 
     amend_loader(SimpleNamespace(Loader=Loader))
     assert Loader().param_value(False, "/use_sim_time", GUARD) == (False, "/use_sim_time", GUARD)
+
+
+def test_ctrl_c_while_a_param_is_computed_is_no_traceback(tmp_path):
+    begun, launch = tmp_path / "begun", tmp_path / "slow.launch"
+    launch.write_text(f'<launch><param name="a" command="sh -c \'touch {begun}; exec sleep 60\'"/>'
+                      '</launch>', encoding="utf-8")
+    started = subprocess.Popen(["roslaunch", launch], text=True, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE, start_new_session=True, preexec_fn=by_hand)
+    try:
+        end = time.monotonic() + LIMIT
+        while not begun.exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        os.killpg(started.pid, signal.SIGINT)
+        assert "Traceback" not in started.communicate(timeout=LIMIT)[1]
+        assert started.returncode == -signal.SIGINT
+    finally:
+        started.kill()
+        started.wait()
+
+
+def by_hand():
+    """As in a terminal; a job in the background ignores SIGINT."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def test_many_packages_are_read_in_one_process(tmp_path, monkeypatch):
+    monkeypatch.setattr(packages, "multiprocessing", None)  # and back afterwards
+    amend_packages(packages)
+    for number in range(101):
+        (tmp_path / f"p{number}").mkdir()
+        (tmp_path / f"p{number}/package.xml").write_text(
+            f"<package><name>p{number}</name><version>1.0.0</version><description>-</description>"
+            '<maintainer email="a@b.org">-</maintainer><license>-</license></package>')
+    assert len(packages.find_packages(tmp_path)) == 101
+
+
+@pytest.mark.parametrize(("program", "kind"), [("roslaunch", "SimpleNamespace"),
+                                               ("mine", "module")])
+def test_only_roslaunch_reads_them_so(program, kind):
+    asks = (f"import sys; sys.argv = ['/usr/bin/{program}']; import catkin_pkg.packages as p; "
+            "print(type(p.multiprocessing).__name__)")
+    assert subprocess.check_output([sys.executable, "-c", asks], text=True) == f"{kind}\n"
