@@ -29,17 +29,6 @@ def test_defaults(monkeypatch):
     assert spawning.pose_from(options).orientation.w == 1.0
 
 
-def test_ctrl_c_before_the_node_is_there_is_one_line(monkeypatch, capsys):
-    def interrupted(*_, **__):
-        raise rospy.ROSInitException("init_node interrupted before it could complete")
-
-    monkeypatch.setattr(rospy, "init_node", interrupted)
-    monkeypatch.setattr(rospy, "myargv", lambda: ["spawn_model", *NEEDED])
-    assert spawning.main() == 1
-    assert capsys.readouterr().err == (
-        "spawn_model: init_node interrupted before it could complete\n")
-
-
 def test_pose_and_negative_numbers():
     # conforms: spawn_model/-x, spawn_model/-y, spawn_model/-z, spawn_model/-R, spawn_model/-P
     # conforms: spawn_model/-Y

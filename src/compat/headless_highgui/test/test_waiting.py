@@ -1,5 +1,6 @@
 """A node says once what it waits for; connections and the master's answers are this test's own."""
 
+import contextlib
 import os
 import signal
 import socket
@@ -250,6 +251,22 @@ def test_without_a_master_a_line_and_ctrl_c_ends_it_at_once(gone, language, line
     waits.send_signal(signal.SIGINT)
     assert waits.communicate(timeout=3.0) == ("", "")  # rospy alone takes 5 s
     assert waits.returncode == 128 + signal.SIGINT
+
+
+def test_ctrl_c_while_it_registers_is_no_traceback():
+    with socket.create_server(("127.0.0.1", 0)) as no_master:
+        def hang_up():
+            with contextlib.suppress(OSError):
+                while True:
+                    no_master.accept()[0].close()
+
+        threading.Thread(target=hang_up, daemon=True).start()
+        registers = node("import rospy; rospy.init_node('lesson')",
+                         PYTHONUNBUFFERED="1", ROS_MASTER_URI=address(no_master))
+        assert "Unable to register with master" in registers.stdout.readline()
+        registers.send_signal(signal.SIGINT)
+        assert "Traceback" not in registers.communicate(timeout=LIMIT)[1]
+        assert registers.returncode == 128 + signal.SIGINT
 
 
 def test_a_wrong_address_of_the_master_is_said():

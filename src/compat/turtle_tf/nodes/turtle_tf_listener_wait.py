@@ -47,5 +47,5 @@ def main():
 if __name__ == "__main__":
     try:
         main()
-    except (rospy.ROSInitException, rospy.ROSInterruptException):
-        pass  # Ctrl-C while waiting, for a master too
+    except rospy.ROSInterruptException:
+        pass  # Ctrl-C while waiting

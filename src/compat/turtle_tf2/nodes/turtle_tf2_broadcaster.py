@@ -36,7 +36,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (rospy.ROSInitException, rospy.ROSInterruptException):
-        pass  # Ctrl-C while waiting, for a master too
+    main()

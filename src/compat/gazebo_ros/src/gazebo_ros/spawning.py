@@ -169,8 +169,6 @@ def main() -> int:
         return run(options, positions)
     except ValueError as error:
         print(error, file=sys.stderr)
-    except rospy.ROSInitException as error:  # Ctrl-C while it looks for the master
-        print(f"spawn_model: {error}", file=sys.stderr)
     except rospy.ROSInterruptException:
         print("spawn_model: stopped before it was done", file=sys.stderr)
     return 1

@@ -49,18 +49,22 @@ SAID = set()  # forms of lines
 def amend_client(client):
     """Let `init_node` say that it waits for a master; `client` is the module rospy.client.
 
-    rospy says in English that it cannot register, and after a Ctrl-C waits 5 s for a traceback.
+    rospy says in English that it cannot register, and a Ctrl-C before it has is a traceback.
     """
     init = client.init_node
 
     def init_node(*words, **options):
         try:
             wait_for_master()
+            init(*words, **options)
         except KeyboardInterrupt:
             if options.get("disable_signals") or hasattr(sys, "ps1"):
                 raise  # for the program, or the prompt that it was typed at
             sys.exit(128 + signal.SIGINT)
-        init(*words, **options)
+        except client.rospy.exceptions.ROSInitException:
+            if not client.rospy.core.is_shutdown_requested():
+                raise
+            sys.exit(128 + signal.SIGINT)  # while it registered
 
     init_node.__doc__ = init.__doc__
     client.init_node = init_node
