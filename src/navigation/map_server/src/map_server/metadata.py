@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from node_basics.bounded_yaml import BoundedLoader
 
 from map_server.errors import MapMetadataError, MapMissingError
 from map_server.files import read_file, unexpanded
@@ -72,13 +73,6 @@ def read_metadata(path: Path) -> MapMetadata:
                        occupied, free, mode)
 
 
-class _Loader(yaml.SafeLoader):
-    """YAML without merge keys (`<<`): ten lines of those can expand to a billion values."""
-
-    def flatten_mapping(self, node: yaml.Node) -> None:
-        """Leaves the key as it is, which SafeLoader then refuses."""
-
-
 def _load(path: Path) -> dict[str, Any]:
     try:
         content = read_file(path, LARGEST)
@@ -97,7 +91,7 @@ def _load(path: Path) -> dict[str, Any]:
         raise MapMetadataError(f"{path}: is not a map's YAML file: it has more than {LARGEST} "
                                f"bytes")
     try:
-        found = yaml.load(content, _Loader)
+        found = yaml.load(content, BoundedLoader)
     except Exception as error:  # PyYAML also raises KeyError, IndexError and more
         reason = " ".join(str(error).split())[:200]
         raise MapMetadataError(f"{path}: is not valid YAML: {reason}; write KEY: VALUE lines such "

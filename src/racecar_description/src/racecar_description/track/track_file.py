@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 import yaml
+from node_basics.bounded_yaml import BoundedLoader
 
 from racecar_description.track.centre_line import CentreLine, Corner
 from racecar_description.track.errors import TrackError
@@ -28,18 +29,11 @@ class TrackFile:
     corners: tuple[Corner, ...]  # of the line
 
 
-class _Loader(yaml.SafeLoader):
-    """YAML without `<<`, because ten lines with it can mean a billion values."""
-
-    def flatten_mapping(self, node: yaml.Node) -> None:
-        """Keep the key as it is; SafeLoader then refuses it."""
-
-
 def load_track_file(path: str | Path) -> TrackFile:
     """Read and check a track file; an error is a TrackError that names file and key."""
     path = Path(path)
     try:
-        values = yaml.load(path.read_text(encoding="utf-8"), _Loader)
+        values = yaml.load(path.read_text(encoding="utf-8"), BoundedLoader)
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "not a text file"
         raise TrackError(f"{path}: {reason}") from error

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
+from node_basics.bounded_yaml import PlainLoader
 
 from sim_viewer.rviz.options import Option, defaults, rgb
 from sim_viewer.rviz.types import TYPES
@@ -27,18 +27,6 @@ class ConfigError(ValueError):
     """A file that cannot be used; the text names it, the line and what is wrong."""
 
 
-class Loader(yaml.SafeLoader):
-    """YAML without aliases: rviz writes none, and ten lines of them can stand for millions."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        """ComposerError for an alias."""
-        if self.check_event(yaml.AliasEvent):
-            raise yaml.composer.ComposerError(
-                None, None, "an alias (*name), which rviz never writes",
-                self.peek_event().start_mark)
-        return super().compose_node(parent, index)
-
-
 def read_config(path: str | Path) -> dict[str, Any]:
     """What `parse` gives for a file; ConfigError if it cannot be read."""
     path = Path(path)
@@ -50,7 +38,7 @@ def read_config(path: str | Path) -> dict[str, Any]:
     if len(data) > LARGEST_FILE:
         raise ConfigError(f"{path} is larger than {LARGEST_FILE} bytes: no .rviz file")
     try:
-        read = Loader(data.decode("utf-8")).get_single_data()
+        read = PlainLoader(data.decode("utf-8")).get_single_data()
     except UnicodeDecodeError:
         raise ConfigError(f"{path} is not text; give a .rviz file") from None
     except Exception as error:  # PyYAML also raises KeyError, IndexError and more

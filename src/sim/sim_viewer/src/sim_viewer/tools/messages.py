@@ -13,6 +13,7 @@ import genpy
 import genpy.message
 import numpy as np
 import yaml
+from node_basics.bounded_yaml import PlainLoader
 from roslib.message import get_message_class
 
 from sim_viewer.registry import Refused
@@ -208,17 +209,6 @@ def _quoted(text: str) -> str:
 
 def _is_message_list(value: Any) -> bool:
     return isinstance(value, (list, tuple)) and bool(value) and isinstance(value[0], genpy.Message)
-
-
-class PlainLoader(yaml.SafeLoader):
-    """YAML without anchors and aliases, by which a short text can expand to a huge one."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        """As SafeLoader's; YAMLError for anchors and aliases."""
-        event = self.peek_event()
-        if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None):
-            raise yaml.YAMLError("anchors (&) and aliases (*) are not allowed here")
-        return super().compose_node(parent, index)
 
 
 def load_yaml(text: str) -> Any:
