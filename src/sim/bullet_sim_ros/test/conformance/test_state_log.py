@@ -79,10 +79,38 @@ def test_a_recording_has_the_scene_once_and_the_links_that_move_at_10_hz(bench, 
     assert [next(iter(line)) for line in lines] == [
         "scene", "names", *["time"] * 4, "scene", "names", *["time"] * 2]
     assert set(scene_from_text(lines[0]["scene"]).links) >= {("high", "body")}
-    assert lines[1]["names"] == ["high::body"]  # and not the ground's
+    assert lines[1] == {"names": ["high::body"], "scripted": 0}  # and not the ground's
     assert [line["time"] for line in lines[2:6]] == pytest.approx([0.1, 0.2, 0.3, 0.4])
     assert lines[2]["poses"][0] == pytest.approx([0, 0, 5 - 0.049, 0, 0, 0, 1], abs=1e-3)
     assert len(lines[-1]["poses"]) == 2
+
+
+def test_a_recording_has_actors_and_static_models_from_when_they_move(make_bench, tmp_path):
+    shape = """<link name="link"><visual name="v"><geometry><sphere><radius>0.2</radius></sphere>
+      </geometry></visual></link>"""
+    bench = make_bench(f"""<sdf version="1.6"><world name="default">
+      <actor name="walker">{shape}<script><trajectory id="0" type="way">
+        <waypoint><time>0</time><pose>0 1 0 0 0 0</pose></waypoint>
+        <waypoint><time>1</time><pose>2 1 0 0 0 0</pose></waypoint></trajectory></script></actor>
+      <actor name="statue">{shape}<pose>0 9 0 0 0 0</pose></actor>
+      <model name="door"><static>true</static>{shape}</model>
+      <model name="wall"><static>true</static>{shape}</model></world></sdf>""")
+    Recording(bench.simulation, tmp_path / "run.jsonl")
+    bench.spawn(BOX.replace("NAME", "robot"), Pose((0, 0, 5)))
+    bench.run(0.35)
+    for x in (3.0, 0.0):  # there and back
+        state = ModelState(model_name="door")
+        state.pose.position.x = x
+        bench.send("/gazebo/set_model_state", state)
+        bench.run(0.1)
+    lines = [json.loads(line) for line in (tmp_path / "run.jsonl").read_text().splitlines()]
+    assert [line for line in lines if "names" in line] == [
+        {"names": ["robot::body", *scripted], "scripted": len(scripted)} for scripted in (
+            [], ["walker::link"], ["walker::link", "door::link"])]
+    moments = [(line["time"], [x for x, *_ in line["poses"]]) for line in lines if "time" in line]
+    walked = [x[1] for _, x in moments[1:]]
+    assert walked == pytest.approx([0.4, 0.6, 0.8, 1.0], abs=2 / 30)
+    assert [x[2:] for _, x in moments] == [[], [], [], [3.0], [0.0]]
 
 
 def test_a_recording_on_a_full_disk_ends_and_the_simulation_goes_on(bench):
