@@ -122,7 +122,7 @@ OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its pla
 # Values of sentences, which may be names elsewhere.
 OF_VALUES = ("none", "unknown", "a number", "this user", "parent link", "child link", "link",
              "joint", "model", "sensor", "function call", "function definition", "class definition",
-             "literal", "expression", "attribute", "simulated clock /clock")
+             "literal", "expression", "attribute", "simulated clock /clock", "the disk", "driving")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
             "world {0} ({1} models)", "model {0} ({1} links, {2} joints)", "the text",
             "{0}. Arg xml is {1}",  # roslaunch's

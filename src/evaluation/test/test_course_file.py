@@ -1,15 +1,17 @@
 """Course files: what they must hold, and the robot's name."""
 
+import re
 from pathlib import Path
 
 import pytest
 import yaml
 
-from evaluation.command_line import NOT_RUN, run_program
+from evaluation.command_line import BY_MAKE, NOT_RUN, option_of, run_program
 from run_session.course_file import load_course
 from run_session.failure import RunError
 
 COURSES = Path(__file__).parent.parent / "courses"
+ROOT = Path(__file__).resolve().parents[3]
 
 
 def changed(tmp_path, **values) -> str:
@@ -33,16 +35,26 @@ def test_followers_are_found_wherever_the_package_is(name):
     assert course.follower in {path.name for path in course.follower_files()}
 
 
-@pytest.mark.parametrize("program, script", [
-    ("course_run", "scripts/course.sh"), ("mark_drive", "scripts/mark.sh")])
-def test_a_folder_that_is_not_ours_is_one_line(capsys, program, script):
+@pytest.mark.parametrize("program, elsewhere", [
+    ("course_run", "scripts/course.sh --out DIR"),
+    ("mark_drive", "make mark OUT=DIR (scripts/mark.sh --out DIR)")])
+def test_a_folder_that_is_not_ours_is_one_line(capsys, program, elsewhere):
     def write() -> int:
         raise PermissionError(13, "Permission denied", "/out")
 
     assert run_program(program, write) == NOT_RUN
     assert capsys.readouterr().err == (
         f"{program}: you may not write /out: cd to a folder of yours, or give one: "
-        f"{script} --out DIR\n")
+        f"{elsewhere}\n")
+
+
+def test_messages_name_each_option_that_make_takes_of_all_trials():
+    rules = re.split(r"\n(?=[a-z-]+:)", (ROOT / "Makefile").read_text(encoding="utf-8"))
+    found = {(rule.partition(":")[0], word) for rule in rules for word in ("out", "resume")
+             if re.search(rf"\$\(.*\b{word.upper()}\)", rule)}
+    assert found == {(program, word) for program, words in BY_MAKE.items() for word in words}
+    assert option_of("mark", "resume") == "--resume (RESUME=1)"
+    assert option_of("avoid", "resume") == "--resume"
 
 
 @pytest.mark.parametrize("values, said", [

@@ -59,6 +59,7 @@ def test_the_course_run_of_a_lap_is_one_that_course_run_and_the_launch_file_know
     words = trial_module.RaceTrial().outing(Path("/o"), case).arguments(5, Path("/w.world"))
     found = CourseRun.parse(words)
     assert (found.fast, found.video, found.seed, found.camera) == (True, False, 5, None)
+    assert found.any_port  # of a batch, which no other terminal joins
     assert found.track == racetrack().track
     package, file = found.launch
     launch = ElementTree.parse(Path(PACKAGES.get_path(package)) / "launch" / file).getroot()

@@ -3,6 +3,7 @@
 import errno
 from argparse import Namespace
 from types import SimpleNamespace
+from typing import ClassVar
 
 import pytest
 
@@ -16,7 +17,7 @@ class FakeDrive(live.LiveDrive):
     program, writes = "drive", ("report.json",)
 
     def __init__(self, out):
-        super().__init__(Namespace(out=out, video=False))
+        super().__init__(Namespace(out=out, video=False, any_port=False))
         self.reports = []
 
     def add_options(self, parser): ...
@@ -35,7 +36,9 @@ class FakeDrive(live.LiveDrive):
 
 
 class Ending:
-    """A session while whose processes end Ctrl-C is typed."""
+    """A session while whose processes end Ctrl-C is typed; `joined`: what each was asked for."""
+
+    joined: ClassVar[list[bool]] = []
 
     def __init__(self, out):
         self.out, self.family = out, SimpleNamespace(spared=None)
@@ -46,7 +49,8 @@ class Ending:
     def __exit__(self, *_):
         raise KeyboardInterrupt
 
-    def launched(self, *_):
+    def launched(self, *_, joined):
+        self.joined.append(joined)
         return SimpleNamespace(start_roscore=lambda: None, master_uri="", why_not_callers="")
 
 
@@ -62,6 +66,16 @@ class Whole(Ending):
     """A session that ends by itself."""
 
     def __exit__(self, *_): ...
+
+
+def test_other_terminals_join_a_drive_but_none_of_a_trial_s(tmp_path, monkeypatch):
+    monkeypatch.setattr(live, "Session", Whole)
+    Whole.joined.clear()
+    for any_port in (False, True):
+        drive = FakeDrive(tmp_path)
+        drive.options.any_port = any_port
+        assert live.run_live(drive) == 0
+    assert Whole.joined == [True, False]
 
 
 class Film:
@@ -88,5 +102,6 @@ def test_a_full_disk_is_one_line_and_the_film_is_closed_too(tmp_path, monkeypatc
     assert run_program("drive", lambda: live.run_live(drive)) == 2
     assert drive.film.closed == 1
     said = capsys.readouterr().err
-    assert said.startswith(f"drive: no space left for {tmp_path / 'report.json'}: make room")
-    assert said.count("\n") == 1
+    disk = next(each for each in (tmp_path, *tmp_path.parents) if each.is_mount())
+    assert said == (f"drive: no space left on {disk} for {tmp_path / 'report.json'}: make room, "
+                    "or give a folder elsewhere: scripts/drive.sh --out DIR\n")

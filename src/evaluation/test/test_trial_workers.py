@@ -86,6 +86,7 @@ def test_results_are_in_order_and_each_case_has_a_folder_of_its_own(tmp_path, ca
     assert sorted(path.name for path in (tmp_path / "naps").iterdir()) == naps(3)
     assert not list(tmp_path.glob(".case*"))
     shown = capfd.readouterr()
+    assert shown.out.startswith("3 cases, 2 at a time; each has a line when it is done\n")
     assert "[3/3]" in shown.out and shown.err == ""
 
 
@@ -274,6 +275,7 @@ def ends_well(trial, out, count, seconds):
 def test_a_killed_workers_cases_are_tried_elsewhere_and_its_processes_end(tmp_path, cluster):
     seconds, out = 1.0625, tmp_path / "out"
     trial = start(out, "--scheduler", cluster.address, "--naps", 6, "--seconds", seconds)
+    assert trial.stdout.readline().startswith("6 cases, on the workers of tcp://")
     assert "no workers" in trial.stdout.readline()
     killed = cluster.add_worker()
     until(lambda: sleepers(seconds))

@@ -57,6 +57,13 @@ def boxed(kind, tmp_path):
         time.sleep(0.05)
 
 
+@pytest.mark.parametrize(("program", "says"), [
+    ("def f():\n    import json\n    json.loads('')\n\nf()\n", "main.py, line 3: json.decoder."),
+    ("print('File \"/x.py\", line 7')\nraise ValueError", "main.py, line 2: ValueError")])
+def test_where_a_program_broke_off(boxed, program, says):
+    assert fault_of(boxed(program)).startswith(f"the program ended (exit code 1): {says}")
+
+
 @pytest.mark.parametrize(("user", "advice"), [
     (1000, r"allows this user no namespaces \(Operation not permitted\); as root it may be: "
            "sudo make mark SUBMISSIONS=DIR; in Docker give --privileged"),

@@ -118,5 +118,6 @@ def test_a_full_disk_is_no_fault_of_a_submission(tmp_path, size):
         ["unshare", "-rm", sys.executable, "-c", SMALL_DISK, tmp_path / "out", size,
          *command(tmp_path), "--no-sandbox"], capture_output=True, text=True, timeout=LIMIT)
     assert done.stdout.startswith("2 ")
-    assert f"mark: no space left for {tmp_path / 'out'}" in done.stdout
+    assert f"mark: no space left on {tmp_path / 'out'} for {tmp_path / 'out'}" in done.stdout
+    assert "give a folder elsewhere: make mark OUT=DIR" in done.stdout
     assert "points," not in done.stdout

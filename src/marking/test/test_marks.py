@@ -5,11 +5,17 @@ import csv
 from made_up import RULES
 from marking.bubblewrap import Kind
 from marking.case_files import OUTPUT, PATH_PICTURE
-from marking.marks import Mark, by_student, mean, points_of, write_marks, write_student_pages
+from marking.marks import (
+    Mark,
+    by_student,
+    mean,
+    points_of,
+    student_file,
+    write_marks,
+    write_student_pages,
+)
 from marking.rules import Points, load_rules
 from marking.submissions import file_name, one_line
-
-from evaluation.run_page import RUN_PAGE
 
 EVIL = "<script>alert(1)</script>"
 
@@ -18,13 +24,17 @@ def write(tmp_path, kind=Kind.USER):
     folder = tmp_path / "cases" / "张伟" / "track0-seed1"
     folder.mkdir(parents=True)
     (folder / OUTPUT).write_bytes(f"printed {EVIL} \xff".encode("latin-1"))
-    (folder / PATH_PICTURE).write_bytes(b"png")
-    (folder / RUN_PAGE).write_text("<!doctype html>")
-    marks = by_student([
+    rows = [
         Mark("b/0-1", "=cmd()", "track0-seed1", "fault", 0.0, (f"100 points: {EVIL}",), ""),
         Mark("a/0-1", "张伟", "track0-seed1", "closed", 90.5, ("9.5 points: slow",),
              "cases/张伟/track0-seed1"),
-        Mark("a/0-2", "张伟", "track0-seed2", "closed", 80.5, (), "")])
+        Mark("a/0-2", "张伟", "track0-seed2", "closed", 80.5, (), "")]
+    for mark in rows[:2]:  # of the first there is no drive any more
+        path = student_file(tmp_path, mark.student, mark.case, PATH_PICTURE)
+        path.parent.mkdir(parents=True)
+        path.write_bytes(b"png")
+        path.with_suffix(".html").write_text("<!doctype html>")
+    marks = by_student(rows)
     write_student_pages(marks, load_rules(RULES), tmp_path)
     write_marks(marks, load_rules(RULES), kind, tmp_path)
 
@@ -52,8 +62,11 @@ def test_pages_show_what_was_printed_and_run_none_of_it(tmp_path):
     assert "printed &lt;script&gt;" in page
     assert 'src="track0-seed1.png"' in page
     assert 'href="track0-seed1.html"' in page
+    assert 'href="students/%E5%BC%A0%E4%BC%9F/track0-seed1.png"' in (
+        tmp_path / "marks.html").read_text()
     for ending in ("png", "html"):
         assert (tmp_path / "students" / "张伟" / f"track0-seed1.{ending}").exists()
+    assert [each.name for each in (tmp_path / "students" / "=cmd()").iterdir()] == ["index.html"]
     for each in tmp_path.rglob("*.html"):
         assert EVIL not in each.read_text()
 

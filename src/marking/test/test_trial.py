@@ -7,16 +7,24 @@ import shutil
 import made_up
 import pytest
 from marking.bubblewrap import Kind
-from marking.case_files import read_case
+from marking.case_files import FILM, PATH_PICTURE, read_case
 from marking.case_runner import BY_TIME
 from marking.trial import TIMED, MarkingTrial
 
+from bullet_sim.description import SceneDescription
+from bullet_sim.rendering.scene import Scene
+from bullet_sim.rendering.scene_text import scene_to_text
+from evaluation.run_page import RECORDING, RUN_PAGE
 from marking import trial as trial_module
 from run_session.failure import RunError
 from run_session.files import find_package
+from run_session.session import StatusLine
 
 CLOSED = {"outcome": "closed", "violations": [], "fault": "", "why": "", "laps_wanted": 1,
           "laps_closed": 1, "driven_share": 1.0, "rms_lateral_m": 0.03, "mean_speed_m_s": 0.2}
+RECORDED = "".join(json.dumps(line) + "\n" for line in (
+    {"scene": scene_to_text(Scene(SceneDescription()))}, {"names": ["car::base"]},
+    *({"time": time, "poses": [[time, 0, 0, 0, 0, 0, 1]]} for time in (0.1, 0.2))))
 
 
 class FakeSession:
@@ -24,8 +32,10 @@ class FakeSession:
 
     def __init__(self, *reports):
         self._reports, self.cases = iter(reports), []
+        self.progress = StatusLine()
 
-    def drive(self, _command, folder, *_):
+    def drive(self, _command, folder, _what, _limit, environment):
+        assert environment["ROS_HOME"].startswith(str(folder))  # the user's own may be full
         self.cases.append(read_case(folder))
         report = next(self._reports)
         if isinstance(report, Exception):
@@ -54,30 +64,70 @@ def test_what_answers_each_image_drives_once(marking, capsys):
     found = mark(marking, session)
     trial, options = marking
     assert trial.pictures([found], options.out) == []
-    assert f"the marks: {options.out / 'marks.csv'}, " in capsys.readouterr().out
+    begun, written = capsys.readouterr().out.splitlines()
+    assert begun == "good/0-1: course, track 0, seed 1: driving, at most 1650 s"
+    assert written.startswith(f"the marks: {options.out / 'marks.csv'}, ")
     assert (found.points, found.note) == (100, "")
     assert [case.timed for case in session.cases] == [False]
 
 
-def test_what_does_not_drives_again_in_real_time(marking):
+def test_what_a_drive_leaves_for_the_student_is_kept_once(marking):
+    trial, options = marking
+    [case] = trial.cases(options)
+    record = trial.drive(FakeSession(CLOSED), case)
+    folder = options.out / "cases" / "good" / "track0-seed1"
+    (folder / RECORDING).write_text(RECORDED)
+    for name in (PATH_PICTURE, FILM):
+        (folder / name).write_text(name)
+    found = trial.judge(record)
+    trial.pictures([found], options.out)
+    kept = options.out / "students" / "good"
+    assert {each.name for each in kept.iterdir()} == {
+        "index.html", *(f"track0-seed1.{ending}" for ending in ("html", "mp4", "png"))}
+    for each in kept.iterdir():  # a link on a page is a file in its folder
+        linked = re.findall(r'(?:href|src)="([^"#:]+)"', each.read_text())
+        assert all((kept / name).exists() for name in linked)
+    assert not {each.name for each in folder.iterdir()} & {RUN_PAGE, PATH_PICTURE, FILM}
+
+
+@pytest.mark.parametrize("program, says", [
+    ("", "is empty"), (" \n", "is empty"), ("# TODO\n", "has only comments")])
+def test_a_program_without_code_is_not_driven(marking, tmp_path, capsys, program, says):
+    (tmp_path / "in" / "good.py").write_text(program)
+    trial, options = marking
+    found = mark(marking, FakeSession())
+    assert (found.points, found.outcome, found.folder) == (0, "fault", "")
+    assert trial.line(found) == f"good/0-1: 0 points, fault; lost 100 points: good.py {says}"
+    trial.pictures([found], options.out)
+    assert "driving" not in capsys.readouterr().out
+    assert f"100 points: good.py {says}" in json.dumps(trial.values([found]))
+    assert says in (options.out / "marks.html").read_text()
+    assert says in (options.out / "students" / "good" / "index.html").read_text()
+
+
+def test_what_does_not_drives_again_in_real_time(marking, capsys):
     session = FakeSession({**CLOSED, "outcome": BY_TIME}, CLOSED)
     found = mark(marking, session)
     assert (found.points, found.note) == (100, TIMED)
     first, second = session.cases
+    assert [line.rpartition(": ")[2] for line in capsys.readouterr().out.splitlines()] == [
+        "driving, at most 1650 s", "driving in real time, at most 1650 s"]
     assert {"real_time_factor:=0", "lockstep_timeout:=5"} <= set(first.launch_args)
     assert {"real_time_factor:=1", "lockstep_timeout:=0.05"} <= set(second.launch_args)
     assert len(first.launch_args) == len(second.launch_args)
 
 
-def test_a_course_that_did_not_come_up_is_tried_again(marking):
+def test_a_course_that_did_not_come_up_is_tried_again(marking, capsys):
     session = FakeSession(RunError("no roscore"), CLOSED)
     assert mark(marking, session).points == 100
+    assert "no roscore" in capsys.readouterr().out.splitlines()
     assert len(session.cases) == 2
 
 
 def test_a_changed_submission_is_marked_again(marking, tmp_path, capsys):
     trial, options = marking
     found = mark(marking, FakeSession(CLOSED))
+    capsys.readouterr()
     (options.out / "report.json").write_text(json.dumps(trial.values([found])))
     assert trial.earlier(options) == [found]
     (tmp_path / "in" / "good.py").write_text("changed")

@@ -11,6 +11,7 @@ from run_session import master
 from run_session.master import (
     CALLERS,
     USUAL,
+    USUAL_PORT,
     free_port,
     is_up,
     listens_here,
@@ -36,6 +37,13 @@ def test_a_free_port_of_this_machine_is_kept(callers, host):
 def test_what_setup_bash_sets_is_no_choice(callers, uri):
     callers(uri)
     assert own_port()[1] == ()
+
+
+@pytest.mark.parametrize(("joined", "port"), [(False, 0), (True, USUAL_PORT)])
+def test_only_what_other_terminals_join_takes_the_usual_port(callers, monkeypatch, joined, port):
+    callers("")
+    monkeypatch.setattr(master, "free_port", lambda wished=USUAL_PORT: wished)  # 0: any
+    assert own_port(joined) == (port, ())
 
 
 def test_one_that_is_taken_is_said(callers):

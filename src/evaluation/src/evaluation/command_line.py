@@ -15,6 +15,7 @@ from racecar_description.track.errors import TrackError
 
 from bullet_sim import __version__
 from run_session.failure import RunError
+from run_session.files import disk_of
 from trial_worlds.errors import WorldError
 
 MOST = 999_999          # largest count or seed
@@ -78,12 +79,27 @@ def one_of(kind: str, variable: str, names: Iterable[str], name: str) -> str:
     return name
 
 
-def script_of(program: str) -> str:
-    """The script that runs a program and takes all of its options, which make does not."""
-    return f"scripts/{re.sub('_(run|drive)$', '', program)}.sh"
+# By program: which of the options that all trials have make takes, and how
+BY_MAKE = {"mark": {"out": "OUT=", "resume": "RESUME=1"}}
+
+
+def option_of(program: str, word: str) -> str:
+    """A trial's option as messages name it, with that of make if it takes it."""
+    by_make = BY_MAKE.get(program, {}).get(word)
+    return f"--{word} ({by_make})" if by_make else f"--{word}"
+
+
+def elsewhere(program: str) -> str:
+    """What to type for another folder of results; the script takes all options, make does not."""
+    name = re.sub("_(run|drive)$", "", program)
+    script = f"scripts/{name}.sh --out DIR"
+    return f"make {name} OUT=DIR ({script})" if "out" in BY_MAKE.get(name, {}) else script
 
 
 PASSED, NOT_PASSED, NOT_RUN, INTERRUPTED = 0, 1, 2, 130
+
+
+SAID = (errno.ENOSPC, errno.EACCES, errno.EPERM)  # of an OSError, which run_program explains
 
 
 def run_program(name: str, work: Callable[[], int]) -> int:
@@ -94,13 +110,16 @@ def run_program(name: str, work: Callable[[], int]) -> int:
     except PermissionError as refused:
         complain(name, RunError(
             f"you may not write {refused.filename}: cd to a folder of yours, or give one: "
-            f"{script_of(name)} --out DIR") if refused.filename else refused)
+            f"{elsewhere(name)}") if refused.filename else refused)
         return NOT_RUN
     except (RunError, TrackError, WorldError, OSError) as failure:
-        full = isinstance(failure, OSError) and failure.errno == errno.ENOSPC
-        complain(name, RunError(
-            f"no space left for {failure.filename or 'what is written'}: make room, or give a "
-            f"folder elsewhere: {script_of(name)} --out DIR") if full else failure)
+        if isinstance(failure, OSError) and failure.errno == errno.ENOSPC:
+            file, disk = failure.filename or "what is written", "the disk"
+            if failure.filename:
+                disk = str(disk_of(Path(file)))
+            failure = RunError(f"no space left on {disk} for {file}: make room, or give a folder "
+                               f"elsewhere: {elsewhere(name)}")
+        complain(name, failure)
         return NOT_RUN
     except KeyboardInterrupt:
         print(f"{name}: interrupted; all processes ended", file=sys.stderr)

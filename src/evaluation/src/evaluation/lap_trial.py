@@ -58,7 +58,7 @@ class Outing:
                  f"lockstep_timeout:={ANSWER_LIMIT:g}", *self.launch)
         return ["--course", self.course, "--track", str(self.venue.track),
                 "--follower", self.follower, "--laps", str(self.laps), "--fast", "--no-video",
-                "--seed", str(seed), "--duration", f"{self.longest * self.laps:g}",
+                "--any-port", "--seed", str(seed), "--duration", f"{self.longest * self.laps:g}",
                 "--startup-timeout", f"{STARTUP_LIMIT:g}", *self.options,
                 *(word for argument in named for word in ("--launch-arg", argument))]
 

@@ -14,7 +14,7 @@ from node_basics.ending import interruptible
 from sim_viewer.replay_page import Curve
 from terminal_language import translated
 
-from evaluation.command_line import NOT_PASSED, PASSED, Parser, run_program
+from evaluation.command_line import NOT_PASSED, PASSED, SAID, Parser, run_program
 from evaluation.film import FilmFile
 from evaluation.lap import LapScorer, Sample, fingerprint
 from evaluation.run_page import RECORDING, RUN_PAGE, begin_recording, write_run_page
@@ -80,6 +80,10 @@ class LiveDrive(ABC):
         add("--out", type=Path, metavar="DIR",
             help=f"where {', '.join(cls.writes)} and log/ go ({cls.usual_out})")
         add("--no-video", dest="video", action="store_false", help="write no run.mp4, no run.html")
+        # A learner looks on from a second terminal, whose devel/setup.bash says 11311; nobody does
+        # that to one of the many drives of a trial.
+        add("--any-port", action="store_true",
+            help="a ROS master on any free port, not 11311: no other terminal joins")
         add("--startup-timeout", type=float, default=STARTUP_TIMEOUT, metavar="S",
             help=f"wall seconds for what is started to be there ({STARTUP_TIMEOUT:g})")
         add("--stuck-timeout", type=float, default=STUCK_TIMEOUT, metavar="S",
@@ -128,7 +132,8 @@ def run_live(drive: LiveDrive) -> int:
     early, outcome = None, Outcome("ended early", "interrupted")
     try:
         with Session(drive.out) as session:
-            launched = session.launched(drive.vehicle, drive.driver)
+            launched = session.launched(drive.vehicle, drive.driver,
+                                        joined=not drive.options.any_port)
             try:
                 drive.progress.status("starting roscore")
                 launched.start_roscore()
@@ -208,9 +213,9 @@ def _make_room(drive: LiveDrive) -> None:
             path.replace(earlier / path.name)
         for half in drive.out.glob("*.part.*"):  # from a video whose run was killed
             half.unlink()
-    except PermissionError:
-        raise
     except OSError as error:
+        if error.errno in SAID:
+            raise
         raise RunError(f"--out {drive.out}: {error.strerror}") from error
 
 

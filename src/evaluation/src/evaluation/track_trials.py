@@ -113,7 +113,8 @@ class TrackTrial(Trial):
         return case, session.drive([
             sys.executable, "-P", str(find_package("evaluation") / "scripts" / "track.py"),
             "--scene", kind.scene, "--seed", str(case.seed), "--tracker", kind.tracker, "--fast",
-            "--no-video", "--out", str(folder)], folder, f"{case.set}, seed {case.seed}", LIMIT)
+            "--no-video", "--any-port", "--out", str(folder)], folder,
+            f"{case.set}, seed {case.seed}", LIMIT)
 
     def judge(self, record: tuple[Case, dict]) -> DriveResult:
         case, report = record

@@ -13,7 +13,15 @@ from pathlib import Path
 from types import UnionType
 from typing import Any, ClassVar, get_args, get_origin, get_type_hints
 
-from evaluation.command_line import NOT_PASSED, PASSED, Parser, complain, run_program
+from evaluation.command_line import (
+    NOT_PASSED,
+    PASSED,
+    SAID,
+    Parser,
+    complain,
+    option_of,
+    run_program,
+)
 from evaluation.report import write_json, write_page
 from run_session.failure import RunError
 from run_session.files import check_space
@@ -121,12 +129,17 @@ class Trial(ABC):
                             " tcp://host:8786, whose workers try the cases (SCHEDULER=)")
         options = parser.parse_args(arguments)
         if options.scheduler and options.workers > 1:
-            raise RunError("--workers is for this machine, --scheduler for others: give one")
+            raise RunError("--workers (WORKERS=) is for this machine, --scheduler (SCHEDULER=) for "
+                           "others: give one")
         options.out = options.out.resolve()
         options.shared = {name: str(getattr(options, name)) for name in self.shared}
         self.check(options)
         self.options = options
         return options
+
+    def named(self, option: str) -> str:
+        """`out` or `resume` as messages name it."""
+        return option_of(self.program, option)
 
     # --- report.json, which holds all results, and from which --resume reads them
 
@@ -150,7 +163,7 @@ class Trial(ABC):
             for name, value in values.get("options", {}).items():
                 if value != options.shared[name]:
                     raise RunError(f"{path}: is of --{name.replace('_', '-')} {value};"
-                                   " give that again, or another --out")
+                                   f" give that again, or another {self.named('out')}")
             return self.from_values(values)
         except OSError as error:
             raise RunError(f"{path}: {error.strerror}; nothing to go on with") from error
@@ -181,7 +194,9 @@ def _run_cases(trial: Trial, options: argparse.Namespace, arguments: Sequence[st
     try:
         options.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise RunError(f"--out {options.out}: {error.strerror}") from error
+        if error.errno in SAID:
+            raise
+        raise RunError(f"{trial.named('out')} {options.out}: {error.strerror}") from error
     check_space(options.out)
     _, why_not_callers = own_port()
     if why_not_callers:
@@ -197,7 +212,7 @@ def _run_cases(trial: Trial, options: argparse.Namespace, arguments: Sequence[st
             _show(trial, tally, options.out)
     if tally.failures:
         raise RunError(f"{len(tally.failures)} of {len(tally.cases)} cases could not be run; "
-                       "--resume tries them again")
+                       f"{trial.named('resume')} tries them again")
     return PASSED if trial.passed(tally.results) else NOT_PASSED
 
 
@@ -258,6 +273,10 @@ def _try_elsewhere(tally: Tally, trial: Trial, options: argparse.Namespace,
         raise RunError(f"{error.name} is not installed: scripts/setup.sh --workers") from error
     needed = [case for case in tally.cases if tally.is_needed(case)]
     say = StatusLine().say
+    if needed:
+        where = (f"on the workers of {options.scheduler}" if options.scheduler else
+                 f"{options.workers} at a time")
+        say(f"{len(needed)} cases, {where}; each has a line when it is done")
     with contextlib.closing(workers.try_on_workers(
             trial, needed, options, arguments, tally.is_needed, say)) as tried:
         for case, result in tried:

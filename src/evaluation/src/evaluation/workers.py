@@ -118,7 +118,7 @@ def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namesp
     dask.config.set({"distributed.worker.profile.enabled": False})  # it costs CPU time
     for name in ("distributed", "distributed.client"):  # the runner reports failures
         logging.getLogger(name).setLevel(logging.CRITICAL)
-    with _connected(options) as client:
+    with _connected(trial, options) as client:
         if not client.scheduler_info()["workers"]:
             say(f"no workers at {options.scheduler} yet: waiting")
 
@@ -151,7 +151,7 @@ def try_on_workers(trial: Trial, cases: Sequence[Case], options: argparse.Namesp
 
 
 @contextlib.contextmanager
-def _connected(options: argparse.Namespace) -> Iterator[Client]:
+def _connected(trial: Trial, options: argparse.Namespace) -> Iterator[Client]:
     """A client of the given scheduler, else of a cluster of threads in this process."""
     with contextlib.ExitStack() as opened:
         cluster = options.scheduler or opened.enter_context(LocalCluster(
@@ -161,7 +161,8 @@ def _connected(options: argparse.Namespace) -> Iterator[Client]:
         try:
             yield client
         except ClosedClientError as error:
-            raise RunError(f"scheduler {options.scheduler} is gone; --resume goes on") from error
+            raise RunError(f"scheduler {options.scheduler} is gone; {trial.named('resume')} goes "
+                           "on") from error
 
 
 def _client_of(cluster: str | LocalCluster) -> Client:

@@ -222,7 +222,7 @@ def _bring_loopback_up() -> None:
 def _environment(master_uri: str) -> dict[str, str]:
     """The environment variables that ROS and Python need, and nothing else of the teacher's."""
     kept = ("PYTHONPATH", "PATH", "ROS_PACKAGE_PATH", "ROS_ROOT", "ROS_DISTRO", "ROS_VERSION",
-            "ROS_ETC_DIR", "ROS_PYTHON_VERSION", "TURTLEBOT3_MODEL")
+            "ROS_ETC_DIR", "ROS_HOME", "ROS_PYTHON_VERSION", "TURTLEBOT3_MODEL")
     return {"LANG": "C.UTF-8", "ROS_MASTER_URI": master_uri, "ROS_HOSTNAME": LOOPBACK,
             **{name: os.environ[name] for name in kept if name in os.environ}}
 

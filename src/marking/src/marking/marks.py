@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -75,7 +74,8 @@ def _share(value: float, best: float, worst: float) -> float:
     return min(max((worst - value) / (worst - best), 0.0), 1.0)
 
 
-MARKS, PAGE, STUDENT_PAGE = "marks.csv", "marks.html", "index.html"
+MARKS, PAGE, STUDENTS, STUDENT_PAGE = "marks.csv", "marks.html", "students", "index.html"
+SHOWN = (PATH_PICTURE, FILM, RUN_PAGE)  # of a case, on the student's page
 FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r")  # a spreadsheet would evaluate such cells
 STYLE = ("<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}"
          "img,video{max-width:100%}table{border-collapse:collapse}ul{margin:0;padding-left:1em}"
@@ -98,7 +98,7 @@ def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, o
                          _notes(rows)])
     write_whole(out / MARKS, table.getvalue().encode("utf-8-sig"))  # Excel needs the BOM
     body = "".join(
-        f'<tr><td><a href="students/{_link(student)}/{STUDENT_PAGE}">{escape(student)}</a></td>'
+        f'<tr><td><a href="{STUDENTS}/{_link(student)}/{STUDENT_PAGE}">{escape(student)}</a></td>'
         f"<td>{mean([mark.points for mark in rows]):g}</td><td>{_list(_lost(rows))}"
         f"{_line(_notes(rows))}</td>"
         f"<td>{''.join(_thumbnail(mark, out) for mark in rows)}</td></tr>\n"
@@ -114,44 +114,34 @@ def write_marks(marks: Mapping[str, Sequence[Mark]], rules: Rules, kind: Kind, o
 
 
 def write_student_pages(marks: Mapping[str, Sequence[Mark]], rules: Rules, out: Path) -> None:
-    """Write students/ID/index.html and its pictures, and nothing else, into that folder."""
+    """Write students/ID/index.html, beside what `student_file` names."""
     for student, rows in marks.items():
-        folder = out / "students" / student
+        folder = out / STUDENTS / student
         folder.mkdir(parents=True, exist_ok=True)
         total = mean([mark.points for mark in rows])
         for mark in rows:
-            for made, name in ((PATH_PICTURE, _picture(mark)), (FILM, _film(mark)),
-                               (RUN_PAGE, _replay(mark))):
-                if mark.folder and (out / mark.folder / made).exists():
-                    shutil.copyfile(out / mark.folder / made, folder / name)
-        parts = "".join(_case_part(mark, out, folder) for mark in rows)
+            for made in SHOWN if not mark.folder else ():  # of an earlier submission
+                student_file(out, student, mark.case, made).unlink(missing_ok=True)
+        parts = "".join(_case_part(mark, out) for mark in rows)
         write_whole(folder / STUDENT_PAGE, _page(
             student, f"<p>{total:g} of {rules.points.most:g} points</p>{parts}").encode())
 
 
-def _picture(mark: Mark) -> str:
-    return f"{mark.case}.png"
+def student_file(out: Path, student: str, case: str, made: str) -> Path:
+    """Where a drive's file of SHOWN is kept: in the folder that the student may be sent."""
+    return out / STUDENTS / student / f"{case}{Path(made).suffix}"
 
 
-def _film(mark: Mark) -> str:
-    return f"{mark.case}.mp4"
-
-
-def _replay(mark: Mark) -> str:
-    return f"{mark.case}.html"
-
-
-def _case_part(mark: Mark, out: Path, folder: Path) -> str:
+def _case_part(mark: Mark, out: Path) -> str:
     lost = f"<p>Why points were lost:</p>{_list(mark.lost)}" if mark.lost else ""
-    picture = f'<p><img src="{_picture(mark)}" alt="the path"></p>' if (
-        folder / _picture(mark)).exists() else ""
-    film = f'<p><video src="{_film(mark)}" controls></video></p>' if (
-        folder / _film(mark)).exists() else ""
-    replay = f'<p><a href="{_replay(mark)}">replay in 3D</a></p>' if (
-        folder / _replay(mark)).exists() else ""
+    forms = ('<p><img src="{}" alt="the path"></p>', '<p><video src="{}" controls></video></p>',
+             '<p><a href="{}">replay in 3D</a></p>')
+    paths = [student_file(out, mark.student, mark.case, made) for made in SHOWN]
+    shown = "".join(form.format(path.name) for form, path in zip(forms, paths, strict=True)
+                    if path.exists())
     outcome = "laps closed" if mark.outcome == "closed" else mark.outcome
     return (f"<h2>{escape(mark.case)}: {mark.points:g} points, {escape(outcome)}</h2>"
-            f"{lost}{_line(mark.note)}{picture}{film}{replay}{_output(mark, out)}")
+            f"{lost}{_line(mark.note)}{shown}{_output(mark, out)}")
 
 
 def _output(mark: Mark, out: Path) -> str:
@@ -163,11 +153,11 @@ def _output(mark: Mark, out: Path) -> str:
 
 
 def _thumbnail(mark: Mark, out: Path) -> str:
-    folder = f"students/{mark.student}"
-    path, film = f"{folder}/{_picture(mark)}", f"{folder}/{_film(mark)}"
-    image = (f'<a href="{_link(path)}"><img style="width:10em" src="{_link(path)}" alt="path"></a>'
-             if (out / path).exists() else "")
-    return image + (f'<br><a href="{_link(film)}">film</a>' if (out / film).exists() else "")
+    paths = [student_file(out, mark.student, mark.case, made) for made in (PATH_PICTURE, FILM)]
+    forms = ('<a href="{0}"><img style="width:10em" src="{0}" alt="path"></a>',
+             '<br><a href="{0}">film</a>')
+    return "".join(form.format(_link(str(path.relative_to(out))))
+                   for form, path in zip(forms, paths, strict=True) if path.exists())
 
 
 def _lost(rows: Sequence[Mark]) -> list[str]:

@@ -32,7 +32,7 @@ class SubmissionProcess:
                  environment: Mapping[str, str], output: Path):
         """Start it. `folder` holds the submission, `program` is relative to it."""
         self._limits = limits
-        where = folder if kind is Kind.NONE else SUBMISSION
+        where = self._where = str(folder if kind is Kind.NONE else SUBMISSION)
         path = environment.get("PYTHONPATH", "")
         own = {"PYTHONPATH": f"{where}/src:{path}" if (folder / "src").is_dir() else path,
                "PYTHONUNBUFFERED": "1", "PYTHONDONTWRITEBYTECODE": "1"}
@@ -104,10 +104,17 @@ class SubmissionProcess:
                 self._printed += len(block)
 
     def _last_words(self) -> str:
-        """Its exception, if it ended by one; other output may differ from run to run."""
+        """Its exception, if it ended by one, and the last line of its own files that led there;
+        other output may differ from run to run."""
         text = self._output.read_text(encoding="utf-8", errors="replace")
-        lines = [line for line in map(one_line, text.splitlines()) if EXCEPTION.match(line)]
-        return f": {lines[-1][:LONGEST_REASON]}" if lines else ""
+        frame = re.compile(rf'File "{re.escape(self._where)}/(.+)", line (\d+)')
+        words = place = ""
+        for said in map(one_line, text.splitlines()):
+            if found := frame.match(said):
+                place = f"{found[1]}, line {found[2]}: "
+            elif EXCEPTION.match(said):
+                words, place = f": {place}{said}"[:LONGEST_REASON], ""
+        return words
 
 
 def _resident_bytes(pid: int) -> int:

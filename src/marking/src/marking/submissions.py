@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import hashlib
 import lzma
@@ -104,7 +105,21 @@ def prepare(submission: Submission, folder: Path, patterns: Sequence[str]) -> Pa
     if submission.fault:
         raise UnpackError(submission.fault)
     unpack(submission.source, folder)
-    return choose_program(folder, patterns)
+    program = choose_program(folder, patterns)
+    _refuse_without_code(folder / program, file_name(str(program)))
+    return program
+
+
+def _refuse_without_code(program: Path, name: str) -> None:
+    """Raise UnpackError for a program without a single line of code."""
+    comments = False
+    with program.open("rb") as file:
+        for line in file:
+            text = line.removeprefix(codecs.BOM_UTF8).strip()
+            if text and not text.startswith(b"#"):
+                return
+            comments = comments or bool(text)
+    raise UnpackError(f"{name} has only comments" if comments else f"{name} is empty")
 
 
 def choose_program(folder: Path, patterns: Sequence[str]) -> Path:

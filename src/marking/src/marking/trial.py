@@ -27,10 +27,13 @@ from marking.course_startup import STARTUP_LIMIT
 from marking.marks import (
     MARKS,
     PAGE,
+    SHOWN,
+    STUDENTS,
     Mark,
     by_student,
     mean,
     points_of,
+    student_file,
     write_marks,
     write_student_pages,
 )
@@ -39,7 +42,7 @@ from marking.submissions import UnpackError, digest, find_submissions, one_line,
 from run_session.failure import RunError
 from run_session.files import find_package
 from run_session.launch import LOOPBACK
-from run_session.session import Session
+from run_session.session import LOG, Session
 
 NOT_RUN, SUBMISSION = "not run", "submission"
 TIMED = "driven in real time: it did not answer each image with a command"
@@ -105,8 +108,9 @@ class MarkingTrial(Trial):
         options.found = {each.student: each for each in find_submissions(options.submissions)}
         options.kind = Kind.NONE if options.no_sandbox else available()
         if options.kind is not Kind.NONE:
-            _refuse_what_the_sandbox_shows(("--submissions", options.submissions),
-                                           ("--out", options.out), ("--rules", given))
+            _refuse_what_the_sandbox_shows(("--submissions (SUBMISSIONS=)", options.submissions),
+                                           (self.named("out"), options.out),
+                                           ("--rules (RULES=)", given))
 
     def cases(self, options: argparse.Namespace) -> list[MarkedCase]:
         rules = options.rules
@@ -144,14 +148,20 @@ class MarkingTrial(Trial):
         file.write(folder)
         command = [*namespace(self.options.kind), sys.executable, "-P", "-m",
                    "marking.case_runner", str(folder)]
-        environment = {**os.environ, MODEL_PATH: scene.models, "ROS_HOSTNAME": LOOPBACK}
+        environment = {**os.environ, MODEL_PATH: scene.models, "ROS_HOSTNAME": LOOPBACK,
+                       "ROS_HOME": str(folder / LOG)}  # not ~/.ros, which may be on a full disk
         limits = self.options.rules.limits
         limit = limits.start_s + limits.wall_s + 3 * STARTUP_LIMIT
-        for _ in range(TRIES):
+        how = "driving in real time" if file.timed else "driving"
+        for left in reversed(range(TRIES)):
+            session.progress.say(f"{case.name}: {file.course}, track {case.track}, seed "
+                                 f"{case.seed}: {how}, at most {limit:g} s")
             try:
                 return session.drive(command, folder, case.name, limit, environment)
             except RunError as error:
                 failure = str(error)
+            if left:
+                session.progress.say(failure)
         return {"outcome": NOT_RUN, "violations": [], "fault": failure}
 
     def judge(self, record: Record) -> Mark:
@@ -160,9 +170,16 @@ class MarkingTrial(Trial):
         shutil.rmtree(folder / SUBMISSION, ignore_errors=True)  # the original is kept
         points, lost = points_of(report, self.options.rules.points)
         lost = tuple(map(one_line, lost))
-        write_run_page(folder / RECORDING, folder / RUN_PAGE, case.name,
-                       "\n".join([f"{points:g} points, {report['outcome']}", *lost]),
-                       folder / FILM, [folder / PATH_PICTURE])
+        if record.driven:
+            kept = {made: student_file(out, case.student, _case_name(case), made) for made in SHOWN}
+            kept[RUN_PAGE].parent.mkdir(parents=True, exist_ok=True)
+            write_run_page(folder / RECORDING, kept[RUN_PAGE], case.name,
+                           "\n".join([f"{points:g} points, {report['outcome']}", *lost]),
+                           folder / FILM, [folder / PATH_PICTURE])
+            for made in (PATH_PICTURE, FILM):
+                kept[made].unlink(missing_ok=True)
+                if (folder / made).exists():
+                    (folder / made).replace(kept[made])
         return Mark(case.name, case.student, _case_name(case), report["outcome"], points, lost,
                     str(folder.relative_to(out)) if record.driven else "",
                     report.get("note", ""), record.submission_sha256)
@@ -190,11 +207,11 @@ class MarkingTrial(Trial):
     def from_values(self, values: dict) -> list[Mark]:
         if values["rules_sha256"] != self.options.rules_sha256:
             raise RunError(f"{self.options.out}: was marked by other rules or tracks; "
-                           "choose another --out")
+                           f"choose another {self.named('out')}")
         if (values["sandbox"] == Kind.NONE.value) != (self.options.kind is Kind.NONE):
             raise RunError(
                 f"{self.options.out}: was marked {SANDBOXED[values['sandbox']]}, this run is "
-                f"{SANDBOXED[self.options.kind.value]}; choose another --out")
+                f"{SANDBOXED[self.options.kind.value]}; choose another {self.named('out')}")
         marks = [Mark(**{**each, "lost": tuple(each["lost"])}) for each in values["marks"]
                  if each["outcome"] != NOT_RUN]
         changed = {student for student, rows in by_student(marks).items()
@@ -209,7 +226,7 @@ class MarkingTrial(Trial):
         write_student_pages(marks, self.options.rules, out)
         write_marks(marks, self.options.rules, self.options.kind, out)
         print(f"the marks: {out / MARKS}, {out / PAGE}, and for each student a page below "
-              f"{out / 'students'}", flush=True)
+              f"{out / STUDENTS}", flush=True)
         return []
 
 

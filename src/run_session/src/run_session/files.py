@@ -26,6 +26,12 @@ def check_space(folder: Path) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(folder))
 
 
+def disk_of(path: Path) -> Path:
+    """Where the disk of this file, which need not be there, is mounted, as `df` names it."""
+    whole = path.absolute()
+    return next(each for each in (whole, *whole.parents) if each.is_mount())
+
+
 def write_whole(path: Path, content: bytes) -> None:
     """Write a file by way of a temporary one: if that fails, the previous file stays intact.
 

@@ -32,11 +32,12 @@ class Launched:
 
     def __init__(
         self, family: Family, log_folder: Path, follower: str = "", vehicle: str = "car",
-        alone: bool = False, environment: Mapping[str, str] = MappingProxyType({})
+        alone: bool = False, environment: Mapping[str, str] = MappingProxyType({}),
+        joined: bool = False
     ):
         """`alone`: in a network namespace of its own, where no other run chooses a port.
 
-        `environment`: further variables for all programs."""
+        `environment`: further variables for all programs. `joined`: by other terminals."""
         self._family, self._follower, self._vehicle = family, follower, vehicle
         self.log_folder = log_folder
         _remove_logs(self.log_folder)
@@ -44,7 +45,7 @@ class Launched:
         # Held from choosing a port until roscore listens, so that no other run takes the same one.
         turn = log_folder if alone else Path(tempfile.gettempdir())
         self._turn = take_turn(turn / f"course_run-{os.getuid()}.lock")
-        self.port, self.why_not_callers = own_port()  # the caller's master
+        self.port, self.why_not_callers = own_port(joined)  # the caller's master
         self.master_uri = f"http://{LOOPBACK if alone else 'localhost'}:{self.port}"
         self._environment = dict(
             os.environ,
@@ -187,7 +188,7 @@ def _remove_logs(folder: Path) -> None:
         return
     if not folder.is_dir() or (any(folder.iterdir()) and not (folder / ROSCORE_LOG).exists()):
         raise RunError(f"{folder} is not a folder of logs that a run wrote: move it, or name"
-                       " another folder for results with --out")
+                       " another folder for results with --out (make mark: OUT=)")
     shutil.rmtree(folder)
 
 

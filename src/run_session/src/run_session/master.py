@@ -126,23 +126,25 @@ def named_by_caller() -> str:
     return "" if uri == USUAL else uri
 
 
-def own_port() -> tuple[int, tuple[str, ...]]:
+def own_port(joined: bool = False) -> tuple[int, tuple[str, ...]]:
     """A free port for a new master: the caller's, if that is possible, else another.
 
-    Then also why: a format string and its argument.
+    Then also why: a format string and its argument. Only a run that other terminals join
+    (`joined`) takes the usual port: to any other's master a terminal that is open beside it would
+    connect by accident, and disturb the run.
     """
-    uri = named_by_caller()
+    uri, usual = named_by_caller(), USUAL_PORT if joined else 0
     if not uri:
-        return free_port(), ()
+        return free_port(usual), ()
     try:
         place = urlsplit(uri)
         host, port = place.hostname or "", place.port or USUAL_PORT
     except ValueError:  # not a URI
-        return free_port(), (ELSEWHERE, uri)
+        return free_port(usual), (ELSEWHERE, uri)
     if not is_local_address(host):
-        return free_port(), (ELSEWHERE, uri)
+        return free_port(usual), (ELSEWHERE, uri)
     found = free_port(port)
-    return (found, ()) if found == port else (free_port(), (TAKEN, uri))
+    return (found, ()) if found == port else (free_port(usual), (TAKEN, uri))
 
 
 def master_to_join() -> str:
@@ -155,7 +157,7 @@ def master_to_join() -> str:
 
 
 def free_port(wished: int = USUAL_PORT) -> int:
-    """This port if it is free, else another."""
+    """This port if it is free, else another; 0: any."""
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
