@@ -33,7 +33,7 @@ class Browser(browser.Browser):
 
     def begin(self) -> None:
         self.call("session.new", capabilities={})
-        self.call("session.subscribe", events=["log.entryAdded"])
+        self.call("session.subscribe", events=["log.entryAdded", "network.beforeRequestSent"])
 
     def prepare(self) -> None:
         (self.profile / "user.js").write_text("".join(
@@ -60,17 +60,20 @@ class Browser(browser.Browser):
         return page
 
     def take(self, event: dict) -> None:
-        entry = event["params"]
-        page = self._pages.get(entry.get("source", {}).get("context"))
-        if page and event["method"] == "log.entryAdded" and entry["level"] == "error":
-            page.errors.append(entry["text"])
+        values = event["params"]
+        page = self._pages.get(values.get("context") or values.get("source", {}).get("context"))
+        if page and event["method"] == "network.beforeRequestSent":
+            page.requests.append(values["request"]["url"])
+        elif page and event["method"] == "log.entryAdded" and values["level"] == "error":
+            page.errors.append(values["text"])
 
 
 class Page(browser.Page):
-    """One tab."""
+    """One tab. `requests`: the URLs it asked for."""
 
     def __init__(self, of: Browser, context: str) -> None:
         super().__init__()
+        self.requests: list[str] = []
         self._browser, self._context = of, context
 
     def call(self, method: str, **params) -> dict:

@@ -9,7 +9,7 @@ import firefox
 import numpy as np
 import pytest
 from background import wait_until
-from sim_viewer.replay_page import Curve, Shown, read_recording, replay_page
+from sim_viewer.replay_page import MOST_MOMENTS, Curve, Shown, read_recording, replay_page
 
 from bullet_sim.description import Box, LightDescription, Material, SceneDescription, Visual
 from bullet_sim.pose import Pose
@@ -20,12 +20,13 @@ pytestmark = pytest.mark.processes  # browsers
 ROBOT, GROUND = ("robot", "base_link"), ("ground", "link")
 
 
-def scene(*robots):
+def scene(*robots, texture=None):
     made = Scene(SceneDescription(background=(0.7, 0.7, 0.7, 1.0)))
     made.add_light(LightDescription("sun", type="directional", direction=(0, 0, -1)))
     for key in (GROUND, *robots):
         size, colour = ((4, 4, 0.01), 0.1) if key == GROUND else ((0.3, 0.2, 0.2), 0.9)
-        paint = Material(diffuse=(colour, 0.0, 0.0, 1.0), ambient=(colour, 0.0, 0.0, 1.0))
+        paint = Material(diffuse=(colour, 0.0, 0.0, 1.0), ambient=(colour, 0.0, 0.0, 1.0),
+                         texture=texture)
         made.add_link(key, [Visual("v", Box(size), material=paint)], Pose())
     return {"scene": scene_to_text(made)}
 
@@ -36,9 +37,9 @@ def at(time, *places):
 
 @pytest.fixture
 def recorded(tmp_path):
-    def write(*lines, rest=""):
+    def write(*lines, rest=b""):
         file = tmp_path / "recording.jsonl"
-        file.write_text("".join(json.dumps(line) + "\n" for line in lines) + rest)
+        file.write_bytes(b"".join(json.dumps(line).encode() + b"\n" for line in lines) + rest)
         return read_recording(file)
     return write
 
@@ -50,7 +51,7 @@ def test_links_that_come_later_and_a_second_simulation_s_time(recorded):
     more = ("late", "link")
     motion = recorded(scene(ROBOT), NAMES, at(0.1, 0), at(0.2, 1), scene(ROBOT, more),
                       {"names": [*NAMES["names"], "late::link"]}, at(0.3, 2, 7), at(0.1, 3, 8),
-                      rest='{"time": 0.2, "po')  # it was killed
+                      rest='{"time": 0.2, "路'.encode()[:-1])  # it was killed
     assert motion.times == pytest.approx([0.1, 0.2, 0.3, 0.4])
     assert motion.poses[:, 0, 0].tolist() == [0, 1, 2, 3]
     assert motion.poses[:, 1, 0].tolist() == [7, 7, 7, 8]
@@ -58,7 +59,51 @@ def test_links_that_come_later_and_a_second_simulation_s_time(recorded):
     assert motion.speeds() == pytest.approx([0, 10, 10, 10])
 
 
+def test_a_second_simulation_begins_behind_half_a_line_of_one_that_was_killed(recorded):
+    second = "".join(f"{json.dumps(line)}\n" for line in (scene(ROBOT), NAMES, at(0.1, 5)))
+    motion = recorded(scene(), NAMES, at(0.1, 0), at(0.2, 1),
+                      rest=b'{"time": 0.3, "po' + second.encode())
+    assert motion.times == pytest.approx([0.1, 0.2, 0.3])
+    assert ROBOT in motion.scene.links
+
+
+def test_what_a_script_moves_is_where_the_scene_had_it_and_has_no_say_in_the_speed(recorded):
+    motion = recorded(scene(ROBOT, ("door", "link")), NAMES, at(0.1, 0), at(0.2, 1),
+                      {"names": [*NAMES["names"], "door::link"], "scripted": 1}, at(0.3, 2, 90))
+    assert motion.poses[:, 1, 0].tolist() == [0, 0, 90]
+    assert motion.speeds() == pytest.approx([0, 10, 10])
+
+
+def test_speeds_where_time_stands_still_and_where_nothing_moves(recorded):
+    again = recorded(scene(ROBOT), NAMES, at(0.1, 0), at(0.1, 1), at(0.0, 1), at(0.1, 2))
+    assert again.times == pytest.approx([0.1, 0.2, 0.2, 0.3])  # after reset_simulation
+    assert again.speeds() == pytest.approx([0, 10, 0, 10])
+    still = recorded(scene(), {"time": 0.1, "poses": []}, {"time": 0.2, "poses": []})
+    assert still.speeds().tolist() == [0, 0]
+
+
+def test_a_long_curve_keeps_its_peaks_and_one_without_values_is_left_out(recorded):
+    values = np.zeros(200_001)
+    values[[777, 150_000]] = 3.0, -4.0
+    motion = recorded(scene(ROBOT), NAMES, at(0.1, 0), at(0.2, 1))
+    name = ("beside", "偏离")
+    page = replay_page(motion, Shown("lap", curves=[
+        Curve(name, "m", np.arange(len(values)) / 50, values), Curve(name, "m", [], [])]))
+    [curve] = run_of(page)["curves"]
+    assert len(curve["values"]) == len(curve["times"]) <= MOST_MOMENTS
+    assert (max(curve["values"]), min(curve["values"])) == (3.0, -4.0)
+    assert curve["times"][curve["values"].index(3.0)] == pytest.approx(777 / 50)
+    with pytest.raises(ValueError):  # JSON.parse knows no Infinity
+        replay_page(motion, Shown("lap", curves=[Curve(name, "m", [0.1], [np.inf])]))
+
+
+def run_of(page):
+    """The data in a page."""
+    return json.loads(re.search(r'id="run">(.*?)</script>', page)[1])
+
+
 def test_nothing_was_recorded(recorded, tmp_path):
+    assert recorded(NAMES, at(0.1, 0), at(0.2, 1)) is None  # no scene
     assert read_recording(tmp_path / "none") is None
     assert recorded(scene(ROBOT), NAMES, at(0.1, 0)) is None
 
@@ -85,7 +130,9 @@ def test_from_disk_the_slider_moves_robot_and_film_and_nothing_is_asked_of_a_net
     subprocess.run(["ffmpeg", "-loglevel", "error", "-f", "lavfi", "-i",
                     "testsrc=size=160x120:rate=10:duration=2", "-pix_fmt", "yuv420p", film],
                    check=True)
-    motion = recorded(scene(ROBOT), NAMES, *(at(time, time / 5) for time in times))
+    (tmp_path / "bad.tga").write_bytes(b"no image")
+    motion = recorded(scene(ROBOT, texture=str(tmp_path / "bad.tga")), NAMES,
+                      *(at(time, time / 5) for time in times))
     file = tmp_path / "run.html"
     file.write_text(replay_page(motion, Shown("lap", film=film, curves=[
         Curve(("speed", "速度"), "m/s", motion.times, motion.speeds())])))
@@ -103,7 +150,7 @@ def test_from_disk_the_slider_moves_robot_and_film_and_nothing_is_asked_of_a_net
         assert page.evaluate("document.querySelector('figcaption').textContent").startswith(
             "speed: 0.20 m/s")
         assert page.errors == []
-        assert {url.partition(":")[0] for url in getattr(page, "requests", [])} <= {
-            "file", "data", "blob"}
+        assert page.requests
+        assert {url.partition(":")[0] for url in page.requests} <= {"file", "data", "blob"}
     finally:
         browser.close()

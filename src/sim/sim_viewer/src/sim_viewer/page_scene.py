@@ -6,6 +6,7 @@ little-endian: four uint32 (corners n, triangles m, 1 if there is uv, 0), then f
 triangles (m, 3). GET /texture/N is an image that browsers can show.
 """
 
+import contextlib
 import itertools
 import mimetypes
 import threading
@@ -80,13 +81,12 @@ class Meshes:
         return {path: number for number, path in self._textures.items() if Path(path).is_file()}
 
     def files(self) -> dict[str, tuple[str, bytes]]:
-        """Content type and content of all that the page would ask for, by path."""
+        """Content type and content of all that the page would ask for and can be read, by path."""
         found = {f"mesh/{number}": ("application/octet-stream", mesh_bytes(part))
                  for number, part in self._parts.items()}
         for path, number in self.texture_numbers().items():
-            as_is = path.lower().endswith(SHOWN_AS_IS)
-            kind = mimetypes.guess_type(path)[0] if as_is else "image/png"
-            found[f"texture/{number}"] = kind, (Path(path).read_bytes() if as_is else _as_png(path))
+            with contextlib.suppress(FormatError, OSError):
+                found[f"texture/{number}"] = _texture(path)
         return found
 
     async def serve_mesh(self, request: web.Request) -> web.Response:
@@ -97,15 +97,16 @@ class Meshes:
         return web.Response(body=await self._node.run_in_thread(mesh_bytes, part),
                             content_type="application/octet-stream")
 
-    async def serve_texture(self, request: web.Request) -> web.StreamResponse:
+    async def serve_texture(self, request: web.Request) -> web.Response:
         """The handler of /texture/N; HTTPNotFound likewise."""
         path = self._textures.get(int(request.match_info["number"]))
         if path is None:
             raise web.HTTPNotFound(text="no such texture in the present scene\n")
-        if path.lower().endswith(SHOWN_AS_IS):
-            return web.FileResponse(path)
-        return web.Response(body=await self._node.run_in_thread(_as_png, path),
-                            content_type="image/png")
+        try:
+            kind, data = await self._node.run_in_thread(_texture, path)
+        except (FormatError, OSError):
+            raise web.HTTPNotFound(text="no image that can be read\n") from None
+        return web.Response(body=data, content_type=kind)
 
 
 def mesh_bytes(part: MeshPart) -> bytes:
@@ -117,12 +118,12 @@ def mesh_bytes(part: MeshPart) -> bytes:
                                      for array, kind in arrays)
 
 
-def _as_png(path: str) -> bytes:
-    try:
-        image = read_image(path, cv2.IMREAD_COLOR)
-    except FormatError:
-        raise web.HTTPNotFound(text="no image that can be read\n") from None
-    return cv2.imencode(".png", image)[1].tobytes()
+def _texture(path: str) -> tuple[str, bytes]:
+    """Content type and content as browsers can read it; FormatError or OSError."""
+    if path.lower().endswith(SHOWN_AS_IS):
+        return mimetypes.guess_type(path)[0], Path(path).read_bytes()
+    image = read_image(path, cv2.IMREAD_COLOR)
+    return "image/png", cv2.imencode(".png", image)[1].tobytes()
 
 
 def page_scene(content: SceneContent, meshes: Meshes, owner: Hashable = None) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import posixpath
 import re
 from base64 import b64encode
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
@@ -18,7 +18,7 @@ import numpy as np
 import rospkg
 
 from bullet_sim.rendering.scene_text import SceneContent, scene_from_text
-from sim_viewer.page_scene import Meshes, page_scene
+from sim_viewer.page_scene import Meshes, page_scene, pose_row
 
 START = "replay/replay.js"
 STYLES = ("style.css", "replay/replay.css")
@@ -36,14 +36,21 @@ class Motion:
     names: Sequence[str]
     times: np.ndarray  # (n,), s, simulated
     poses: np.ndarray
+    scripted: frozenset[str] = frozenset()  # those that physics does not move
 
     def speeds(self) -> np.ndarray:
         """m/s (n,) of the link that went farthest: the robot's first, as its model's begins."""
-        steps = np.linalg.norm(np.diff(self.poses[..., :3], axis=0), axis=-1)
-        models = [name.partition("::")[0] for name in self.names]
-        first = [models.index(model) for model in dict.fromkeys(models)]
-        farthest = first[int(np.argmax(steps.sum(0)[first]))]
-        return np.concatenate([[0.0], steps[:, farthest] / np.diff(self.times)])
+        models: dict[str, int] = {}  # their first links
+        for column, name in enumerate(self.names):
+            if name not in self.scripted:
+                models.setdefault(name.partition("::")[0], column)
+        if not models:
+            return np.zeros(len(self.times))
+        places = self.poses[:, list(models.values()), :3]
+        steps = np.linalg.norm(np.diff(places, axis=0), axis=-1)
+        farthest = steps[:, int(np.argmax(steps.sum(0)))]
+        spans = np.diff(self.times)
+        return np.concatenate([[0.0], farthest / np.where(spans > 0, spans, np.inf)])
 
 
 @dataclass(frozen=True)
@@ -64,57 +71,62 @@ class Shown:
     text: str = ""  # the run's figures
     film: Path | None = None
     pictures: Sequence[Path] = ()
-    curves: Sequence[Curve] = field(default_factory=list)
+    curves: Sequence[Curve] = ()
 
 
-MOST_MOMENTS = 3000  # poses of a link in a page
+MOST_MOMENTS = 3000  # in a page, of a link or a curve
 
 
 def read_recording(path: Path) -> Motion | None:
     """The recording of the simulator's parameter `recording`; None if nothing was recorded.
-    FormatError if its scene is none.
+    FormatError or ValueError if it is none.
 
-    A second simulation's time goes on where the first one's ended; a link is where it was first
-    seen before it is there, and where it was last seen after it is gone.
+    A second simulation's time goes on where the first one's ended; a link is where the scene had it
+    before it is named, and where it was last seen after it is gone. Half a line, which a simulator
+    leaves that was killed, is left out.
     """
-    scenes: list[str] = []
+    text = path.read_text(encoding="utf-8", errors="replace") if path.exists() else ""
+    scenes: list[SceneContent] = []
     names: list[str] = []
+    scripted: set[str] = set()
+    known: dict[str, None] = {}  # names in order
     moments: list[tuple[float, dict[str, list[float]]]] = []
+    placed: dict[str, list[float]] = {}  # by the newest scene, until the next moment
     offset = last = 0.0
-    for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
+    for line in text.splitlines():
         try:
-            read = json.loads(line)
-        except ValueError:  # the last line of a simulator that was killed
-            break
+            read = json.loads(line[max(line.rfind('{"scene":'), 0):])  # behind half a line
+        except ValueError:
+            continue
         if "scene" in read:
-            scenes.append(read["scene"])
+            scenes.append(scene_from_text(read["scene"]))
+            placed |= {f"{model}::{link}": pose_row(pose)
+                       for (model, link), (pose, _) in scenes[-1].links.items()}
         elif "names" in read:
             names = read["names"]
+            scripted.update(names[len(names) - read.get("scripted", 0):])
         else:
-            offset += last if read["time"] < last else 0.0
+            offset += last if read["time"] <= last else 0.0
             last = read["time"]
-            moments.append((offset + last, dict(zip(names, read["poses"], strict=True))))
-    if len(moments) < 2:
+            moments.append((offset + last, placed | dict(zip(names, read["poses"], strict=True))))
+            known |= dict.fromkeys(names)
+            placed = {}
+    if len(moments) < 2 or not scenes:
         return None
-    moments = moments[::-(-len(moments) // MOST_MOMENTS)]
-    known = list(dict.fromkeys(name for _, poses in moments for name in poses))
     poses = np.empty((len(moments), len(known), 7), np.float32)
     for column, name in enumerate(known):
-        row = next(poses[name] for _, poses in moments if name in poses)
+        row = next(there[name] for _, there in moments if name in there)
         for number, (_, there) in enumerate(moments):
             poses[number, column] = row = there.get(name, row)
-    return Motion(_all_of(scenes), known, np.array([time for time, _ in moments]), poses)
-
-
-def _all_of(scenes: Sequence[str]) -> SceneContent:
-    """The last scene, with all links that ever were."""
-    contents = [scene_from_text(text) for text in scenes]
-    links = {key: link for content in contents for key, link in content.links.items()}
-    return SceneContent(contents[-1].description, contents[-1].lights, links)
+    step = -(-len(moments) // MOST_MOMENTS)
+    links = {key: link for content in scenes for key, link in content.links.items()}
+    return Motion(SceneContent(scenes[-1].description, scenes[-1].lights, links),
+                  list(known), np.array([time for time, _ in moments])[::step], poses[::step],
+                  frozenset(scripted))
 
 
 def replay_page(motion: Motion, shown: Shown) -> str:
-    """The page's text."""
+    """The page's text; ValueError for a curve with a value that is no number."""
     meshes = Meshes()
     run = {
         "scene": page_scene(motion.scene, meshes), "names": list(motion.names),
@@ -124,9 +136,8 @@ def replay_page(motion: Motion, shown: Shown) -> str:
         "title": shown.title, "text": shown.text,
         "film": shown.film and _url("video/mp4", shown.film.read_bytes()),
         "pictures": [_url("image/png", path.read_bytes()) for path in shown.pictures],
-        "curves": [{"name": curve.name, "unit": curve.unit,
-                    "times": np.round(curve.times, 3).tolist(),
-                    "values": np.round(curve.values, 4).tolist()} for curve in shown.curves],
+        "curves": [{"name": curve.name, "unit": curve.unit, **_shown_moments(curve)}
+                   for curve in shown.curves if len(curve.times)],
     }
     web = Path(rospkg.RosPack().get_path("sim_viewer")) / "web"
     modules = {f"web/{path}": _url("text/javascript", text.encode())
@@ -140,6 +151,14 @@ def replay_page(motion: Motion, shown: Shown) -> str:
             f'<script type="importmap">{json.dumps({"imports": modules})}</script></head><body>'
             f'<script type="application/json" id="run">{_in_script(run)}</script>'
             f'<script type="module">import "web/{START}";</script></body></html>\n')
+
+
+def _shown_moments(curve: Curve) -> dict[str, list[float]]:
+    """At most MOST_MOMENTS: of neighbours the one farthest from 0, so that no peak is lost."""
+    times, values = np.round(curve.times, 3), np.round(curve.values, 4)
+    step = -(-len(times) // MOST_MOMENTS)
+    rows = [at + int(np.argmax(np.abs(values[at:at + step]))) for at in range(0, len(times), step)]
+    return {"times": times[rows].tolist(), "values": values[rows].tolist()}
 
 
 def _modules(web: Path) -> dict[str, str]:
@@ -166,4 +185,4 @@ def _url(kind: str, data: bytes) -> str:
 
 
 def _in_script(values: dict) -> str:
-    return json.dumps(values, separators=(",", ":")).replace("<", "\\u003c")
+    return json.dumps(values, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")

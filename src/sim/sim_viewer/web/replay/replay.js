@@ -59,9 +59,9 @@ class Player {
     return () => this._moves.delete(take);
   }
 
-  /** Where the 3D view finds a mesh or a texture. */
+  /** Where the 3D view finds a mesh or a texture; a texture that nobody could read: nothing. */
   address(path) {
-    return run.files[path];
+    return run.files[path] ?? "data:,";
   }
 
   play(wanted) {
