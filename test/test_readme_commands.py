@@ -100,6 +100,13 @@ def test_the_chinese_page_shows_the_same(page: str) -> None:
     assert commands_of(translated(page)) == commands_of(page)
 
 
+@pytest.mark.parametrize(("name", "words"), [
+    ("README.md", "skip its `apt-get install ros-noetic-"),
+    ("README.zh-CN.md", "跳过教程里的 `apt-get install ros-noetic-")])
+def test_the_readme_says_what_of_a_tutorial_is_not_typed(name: str, words: str) -> None:
+    assert words in (ROOT / name).read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize("name", ("README.md", "README.zh-CN.md"))
 def test_the_readme_is_short(name: str) -> None:
     assert len((ROOT / name).read_text(encoding="utf-8").splitlines()) <= MOST_LINES

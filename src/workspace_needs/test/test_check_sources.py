@@ -52,6 +52,7 @@ def test_an_interpreter_that_is_not_there(node, first, named):
 
 @pytest.mark.parametrize("content", [
     b"#!/usr/bin/env python3\n", b"#!/bin/sh -e\nx\r\n",
+    b"#!/usr/bin/python\n", b"#!/usr/bin/env python\n",
     b"#!/usr/bin/env python2.7\n", b"#!/usr/bin/env -S A=1 python3 -u\n"])
 def test_others_are_not_named(node, content):
     assert node(content) == []

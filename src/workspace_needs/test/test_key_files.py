@@ -130,6 +130,14 @@ def test_the_name_of_another_package_is_not_said_to_be_mistyped(key):
     assert "meant?" not in Tables(of_release="bookworm").answer(key).why
 
 
+@pytest.mark.parametrize("key, instead", [
+    ("rosserial_python", "its drive and sensors"), ("slam_karto", "gmapping"),
+    ("frontier_exploration", "move_base"), ("explore_lite", "move_base"),
+    ("map_merge", "/tb3_0/map")])
+def test_what_there_is_instead_of_a_node_that_nobody_has(key, instead):
+    assert instead in Tables().answer(key).why
+
+
 @pytest.mark.parametrize("key, package", [
     ("bfl", "liborocos-bfl-dev"), ("roscpp", "libroscpp-dev"), ("cv_bridge", "libcv-bridge-dev"),
     ("eigen", "libeigen3-dev"),
