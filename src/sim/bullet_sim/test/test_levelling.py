@@ -15,13 +15,18 @@ from bullet_sim.description import (
     LinkDescription,
     Mesh,
     ModelDescription,
+    Plane,
     Sphere,
     Surface,
+    WorldDescription,
 )
+from bullet_sim.formats.loading import load_model
+from bullet_sim.formats.resources import Resources
 from bullet_sim.physics.assembly import assemble
 from bullet_sim.physics.levelling import CLEARANCE, levelled
 from bullet_sim.physics.tyres import TREAD, crown, engine_shapes, find_tyre
 from bullet_sim.pose import Pose
+from bullet_sim.world import World
 
 LAYER = 1e-3  # m
 LIGHT = Inertial(1.0, inertia=(0.01, 0, 0, 0.01, 0, 0.01))
@@ -267,3 +272,28 @@ def test_a_wheel_has_a_tread_in_its_middle():
 def test_other_cylinders_are_left_alone(tree):
     for link in tree.links:
         assert list(engine_shapes(link)) == link.collisions
+
+
+INERTIAL = ('<inertial><origin xyz="0 0 {}"/><mass value="{}"/><inertia ixx="0.02" iyy="0.02" '
+            'izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>')
+WHEEL = ('<link name="{0}">' + INERTIAL.format(0, 0.3) + '<collision><origin rpy="1.5708 0 0"/>'
+         '<geometry><cylinder radius="0.05" length="0.03"/></geometry></collision></link>'
+         '<joint name="{0}" type="continuous"><parent link="base"/><child link="{0}"/>'
+         '<origin xyz="0 {1} 0.05"/><axis xyz="0 1 0"/></joint>')
+FLAT = ('<robot name="flat"><link name="base">' + INERTIAL.format(0.05, 5) + '<collision>'
+        '<origin xyz="0 0 0.05"/><geometry><box size="0.4 0.2 0.1"/></geometry></collision></link>'
+        + WHEEL.format("left", 0.12) + WHEEL.format("right", -0.12) + "</robot>")
+
+
+def test_a_flat_chassis_whose_bottom_is_level_with_the_wheels_drives():
+    world = World(WorldDescription())
+    plane = Collision("c", Plane((0.0, 0.0, 1.0), (9.0, 9.0)), surface=Surface(mu=1.0, mu2=1.0))
+    world.spawn(ModelDescription("ground", static=True,
+                                 links=(LinkDescription("l", collisions=(plane,)),)))
+    robot = world.spawn(load_model(FLAT, Resources()))
+    for side in ("left", "right"):
+        robot.joint(side).drive_velocity(4.0, 5.0)
+    world.step(2000)
+    moved = robot.pose.position[0]
+    world.close()
+    assert moved == pytest.approx(4.0 * 0.05 * 2.0, rel=0.1)
