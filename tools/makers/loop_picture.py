@@ -21,19 +21,9 @@ import cv2
 import numpy as np
 from PIL import Image
 
-from evaluation.course_run import FOUND, PLAN_PX, SEEN
+from evaluation.course_run import PLAN_PX, legend_entries
 from evaluation.film import BAR_PX, FILM_RATE_HZ, VIEW_PX
-from evaluation.picture import (
-    CAR,
-    LEGEND_PX,
-    PAPER,
-    START,
-    WHITE,
-    bgr,
-    lap_colour,
-    legend_bar,
-    write_text,
-)
+from evaluation.picture import LEGEND_PX, PAPER, bgr, legend_bar, write_text
 from run_session.course_file import load_course
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -114,7 +104,6 @@ def _still(page: object) -> np.ndarray:
 
 def lap_picture(course: str, page: np.ndarray, outside: np.ndarray) -> np.ndarray:
     """Camera and path of the film's picture, and the view from outside between them, BGR."""
-    told, colour = load_course(course), lap_colour(0)
     camera = page[BAR_PX:BAR_PX + VIEW_PX[1], :VIEW_PX[0]]
     path = page[BAR_PX:page.shape[0] - LEGEND_PX, VIEW_PX[0]:VIEW_PX[0] + PLAN_PX]
     parts = [into(camera, PANEL_PX), into(outside, PANEL_PX, cover=True), into(path, PATH_PX)]
@@ -122,10 +111,8 @@ def lap_picture(course: str, page: np.ndarray, outside: np.ndarray) -> np.ndarra
     row = np.hstack([parts[0], gap, parts[1], gap, parts[2]])
     title = np.full((LEGEND_PX, row.shape[1], 3), bgr(PAPER), np.uint8)
     write_text(title, TITLES[course], (10, 19), 12)
-    marked = [("seen as yellow", SEEN), ("line found", FOUND)] if told.film_band else []
-    legend = legend_bar(row.shape[1], [
-        *marked, ("line", told.line_colour), ("right edge", WHITE), ("driven", colour),
-        ("start", START), ("car", CAR)])
+    marked, lines = legend_entries(load_course(course))
+    legend = legend_bar(row.shape[1], [*marked, *lines])
     return np.vstack([title, row, legend])
 
 

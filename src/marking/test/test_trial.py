@@ -7,9 +7,9 @@ import shutil
 import made_up
 import pytest
 from marking.bubblewrap import Kind
-from marking.case_files import FILM, PATH_PICTURE, read_case
+from marking.case_files import FILM, OUTPUT, PATH_PICTURE, read_case
 from marking.case_runner import BY_TIME
-from marking.trial import TIMED, MarkingTrial
+from marking.trial import TIMED, TRIES, MarkingTrial
 
 from bullet_sim.description import SceneDescription
 from bullet_sim.rendering.scene import Scene
@@ -88,6 +88,21 @@ def test_what_a_drive_leaves_for_the_student_is_kept_once(marking):
         linked = re.findall(r'(?:href|src)="([^"#:]+)"', each.read_text())
         assert all((kept / name).exists() for name in linked)
     assert not {each.name for each in folder.iterdir()} & {RUN_PAGE, PATH_PICTURE, FILM}
+
+
+def test_a_drive_shows_nothing_of_an_earlier_one(marking):
+    trial, options = marking
+    folder, kept = options.out / "cases/good/track0-seed1", options.out / "students/good"
+    for each in (folder, kept):
+        each.mkdir(parents=True)
+    (folder / RECORDING).write_text(RECORDED)  # of a run that was killed
+    for name in (PATH_PICTURE, FILM, OUTPUT):
+        (folder / name).write_text("earlier")
+    for ending in ("html", "png", "mp4"):
+        (kept / f"track0-seed1.{ending}").write_text("earlier")
+    trial.pictures([mark(marking, FakeSession(*[RunError("no roscore")] * TRIES))], options.out)
+    assert {each.name for each in kept.iterdir()} == {"index.html"}
+    assert "earlier" not in (kept / "index.html").read_text()
 
 
 @pytest.mark.parametrize("program, says", [

@@ -28,7 +28,7 @@ from evaluation.autorace_judge import (
 from evaluation.command_line import Parser, one_of
 from evaluation.picture import CAR, FAINT, LAPS, LINE, WHITE, legend, map_sheet, pixels, write_png
 from evaluation.report import cell, mean, table
-from evaluation.run_page import begin_recording, write_run_page
+from evaluation.run_page import RECORDING, begin_recording, write_run_page
 from evaluation.trial import Case, Trial
 from run_session import simulator
 from run_session.launch import Launched
@@ -59,7 +59,7 @@ class AutoraceStack:
         self.samples = []
         self._log = log
         rospy.set_param("/gazebo/state_log", str(log))
-        self._recording = log.with_suffix(".recording")
+        self._recording = log.with_suffix(f".{RECORDING}")
         begin_recording(self._launched.master_uri, self._recording)
         self._child = self._launched.start(log.stem, [
             "roslaunch", "learning_autorace", "autorace.launch", f"drive:={script}", "gui:=false",

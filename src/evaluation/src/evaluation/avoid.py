@@ -18,7 +18,7 @@ from learning_laser import hall
 from evaluation.command_line import Parser, one_of
 from evaluation.picture import write_tiles
 from evaluation.report import cell, mean, table
-from evaluation.run_page import begin_recording, write_run_page
+from evaluation.run_page import RECORDING, begin_recording, write_run_page
 from evaluation.trial import Case, Trial
 from run_session.failure import RunError
 from run_session.files import Tail, find_package
@@ -32,7 +32,6 @@ LIMIT = 120.0  # s, simulated
 TOPICS = ("/scan", "/cmd_vel")
 REACHED, CONTACT, LATE = "reached", "contact", "late"
 TILE = (5.0, 1.9)  # inches
-RECORDING = ".recording"  # ending of a hall's, until its page is made
 
 
 @dataclass(frozen=True)
@@ -95,7 +94,7 @@ class AvoidTrial(Trial):
             states = watch(launched, log)
         finally:
             session.family.stop()
-        write_run_page(world.with_suffix(RECORDING), world.with_suffix(".html"), case.name)
+        write_run_page(world.with_suffix(f".{RECORDING}"), world.with_suffix(".html"), case.name)
         return case, states
 
     def judge(self, record: tuple[Case, list[dict]]) -> DriveResult:
@@ -119,7 +118,7 @@ class AvoidTrial(Trial):
 def bring_up(launched: Launched, world: Path, seed: int, avoider: str, state_log: Path) -> None:
     """Start all, wait until all nodes are connected, and unpause."""
     launched.start_roscore()
-    begin_recording(launched.master_uri, world.with_suffix(RECORDING))
+    begin_recording(launched.master_uri, world.with_suffix(f".{RECORDING}"))
     launched.start("roslaunch", [
         "roslaunch", "evaluation", "avoid.launch", f"world_name:={world}", f"seed:={seed}",
         f"avoider:={avoider}", f"state_log:={state_log}", "paused:=true", "real_time_factor:=0"])

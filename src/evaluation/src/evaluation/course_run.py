@@ -107,6 +107,13 @@ MASK_LOW, MASK_HIGH = (20, 43, 46), (90, 255, 255)  # HSV, the lessons' bounds f
 SEEN, FOUND = "#ff3cff", "#ff0000"  # round the mask's pixels, and where lesson 05 finds the line
 
 
+def legend_entries(course: CourseFile) -> tuple[list[tuple[str, str]], list[tuple[str, str]]]:
+    """Word and colour of what is drawn on the camera's image, and of what is on the map."""
+    marked = [("seen as yellow", SEEN), ("line found", FOUND)] if course.film_band else []
+    return marked, [("line", course.line_colour), ("right edge", WHITE), ("driven", lap_colour(0)),
+                    ("start", START), ("car", CAR)]
+
+
 class CourseFilm(CameraFilm):
     """The video of one drive round a course."""
 
@@ -115,9 +122,7 @@ class CourseFilm(CameraFilm):
         super().__init__(path, course.camera, period)
         self._band, self._drive = course.film_band, drive
         self._floor, self._drawn = course_plan(track_file, PLAN_PX, course.line_colour), 0
-        marked = (("seen as yellow", SEEN), ("line found", FOUND)) if self._band else ()
-        lines = (("line", course.line_colour), ("right edge", WHITE), ("driven", lap_colour(0)),
-                 ("start", START), ("car", CAR))
+        marked, lines = legend_entries(course)
         self._legend = np.hstack([legend_bar(VIEW_PX[0], marked), legend_bar(PLAN_PX, lines)])
 
     def page(self, view: np.ndarray, now: float) -> np.ndarray:

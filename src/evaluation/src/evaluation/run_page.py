@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 import rosgraph
 from sim_viewer.replay_page import Curve, Shown, read_recording, replay_page
 
+from bullet_sim.errors import shortened
 from run_session.files import write_whole
 
 RUN_PAGE, RECORDING = "run.html", "recording.jsonl"
@@ -22,12 +24,22 @@ def begin_recording(master_uri: str, recording: Path) -> None:
 def write_run_page(recording: Path, page: Path, title: str, text: str = "",
                    film: Path | None = None, pictures: Sequence[Path] = (),
                    curves: Sequence[Curve] = ()) -> None:
-    """Write the page and remove the recording; if nothing was recorded, do nothing."""
-    motion = read_recording(recording)
-    if motion is None:
-        return
-    speed = Curve(("speed", "速度"), "m/s", motion.times, motion.speeds())
-    shown = Shown(title, text, film if film and film.exists() else None,
-                  [path for path in pictures if path.exists()], [speed, *curves])
-    write_whole(page, replay_page(motion, shown).encode())
-    recording.unlink()
+    """Write the page and remove the recording. If nothing was recorded there is no page, nor one of
+    an earlier run; if it cannot be made, a line says why."""
+    try:
+        page.unlink(missing_ok=True)
+        motion = read_recording(recording)
+        if motion is not None:
+            speed = Curve(("speed", "速度"), "m/s", motion.times, motion.speeds())
+            shown = Shown(title, text, film if film and film.exists() else None,
+                          [path for path in pictures if path.exists()], [speed, *curves])
+            write_whole(page, replay_page(motion, shown).encode())
+        recording.unlink(missing_ok=True)
+    except OSError as error:
+        _say_none(page, f"{error.filename or recording}: {error.strerror}")
+    except Exception as error:  # whatever is wrong with an extra, the drive has its result
+        _say_none(page, f"{recording}: cannot be shown ({type(error).__name__}: {error})")
+
+
+def _say_none(page: Path, why: str) -> None:
+    print(f"no {page}: {shortened(why)}; all other results are there", file=sys.stderr)

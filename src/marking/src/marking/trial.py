@@ -21,7 +21,7 @@ from evaluation.report import table
 from evaluation.run_page import RECORDING, RUN_PAGE, write_run_page
 from evaluation.trial import Case, Trial
 from marking.bubblewrap import Kind, available, hidden, namespace, shown
-from marking.case_files import COURSES, FILM, PATH_PICTURE, CaseFile, Scene, make_scene
+from marking.case_files import COURSES, FILM, OUTPUT, PATH_PICTURE, CaseFile, Scene, make_scene
 from marking.case_runner import BY_TIME
 from marking.course_startup import STARTUP_LIMIT
 from marking.marks import (
@@ -145,6 +145,8 @@ class MarkingTrial(Trial):
     def _drive(self, session: Session, case: MarkedCase, scene: Scene, file: CaseFile) -> dict:
         """The report of the drive, or what prevented it."""
         folder = _folder(self.options.out, case)
+        for made in (OUTPUT, PATH_PICTURE, FILM, RECORDING):  # of an earlier drive
+            (folder / made).unlink(missing_ok=True)
         file.write(folder)
         command = [*namespace(self.options.kind), sys.executable, "-P", "-m",
                    "marking.case_runner", str(folder)]
