@@ -53,12 +53,11 @@ def test_a_run_in_which_nothing_moved_is_shown(written):
 def test_a_recording_that_is_none_costs_a_line_and_no_result(written, tmp_path, line):
     page, said = written([*WHOLE, line])
     assert page is None
-    assert said.startswith(f"no {tmp_path / 'run.html'}: {tmp_path / 'recording.jsonl'}: cannot be "
-                           "shown (")
+    assert said.startswith(f"no run.html: {tmp_path / 'recording.jsonl'} cannot be shown (")
     assert said.endswith("); all other results are there\n") and said.count("\n") == 1
 
 
 def test_a_page_that_cannot_be_written_costs_a_line_too(written, tmp_path):
     (tmp_path / "run.html.tmp").mkdir()
-    assert written(WHOLE) == (None, f"no {tmp_path / 'run.html'}: {tmp_path / 'run.html'}: Is a "
+    assert written(WHOLE) == (None, f"no run.html: {tmp_path / 'run.html'}: Is a "
                               "directory; all other results are there\n")

@@ -36,10 +36,8 @@ def write_run_page(recording: Path, page: Path, title: str, text: str = "",
             write_whole(page, replay_page(motion, shown).encode())
         recording.unlink(missing_ok=True)
     except OSError as error:
-        _say_none(page, f"{error.filename or recording}: {error.strerror}")
+        print(f"no {page.name}: {error.filename or recording}: {error.strerror}; all other results "
+              "are there", file=sys.stderr)
     except Exception as error:  # whatever is wrong with an extra, the drive has its result
-        _say_none(page, f"{recording}: cannot be shown ({type(error).__name__}: {error})")
-
-
-def _say_none(page: Path, why: str) -> None:
-    print(f"no {page}: {shortened(why)}; all other results are there", file=sys.stderr)
+        print(f"no {page.name}: {recording} cannot be shown ({type(error).__name__}: "
+              f"{shortened(str(error))}); all other results are there", file=sys.stderr)
