@@ -15,7 +15,7 @@ from terminal_language.streams import TranslatedStream
 from terminal_language.wanted import home, is_ours, wanted_language
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1] / "src"
-START = SOURCE.parents[1] / "headless_highgui/src"  # has usercustomize.py
+START = SOURCE.parents[1] / "python_amendments/src"  # has usercustomize.py
 CATALOGUE = Catalogue({
     "": "header", "the line is lost": "线丢了", "no such file": "没有这个文件",
     "{0} has no {1}": "{0} 没有{1}", "{0} has no joint called {1}": "{0} 没有名为 {1} 的关节",

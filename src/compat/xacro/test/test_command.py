@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from node_basics.refusing import REFUSED
 
 HERE = Path(__file__).resolve().parents[1]
 CORE = HERE.parents[1] / "sim/bullet_sim/src"
@@ -113,7 +114,7 @@ def test_an_unknown_turtlebot3_is_answered_with_those_there_are(folder):
     for name in ("burger", "waffle", "waffle_pi", "burger_for_autorace"):
         (folder / f"turtlebot3_{name}.urdf.xacro").write_text("<robot name='r'/>")
     result = run(folder, "turtlebot3_wafle.urdf.xacro")
-    assert result.returncode == 3  # it ends roslaunch: launch_end.py in headless_highgui
+    assert result.returncode == REFUSED
     assert result.stderr.count("\n") == 1
     assert ("is wafle: no such model; there are: burger, waffle, waffle_pi\n" in result.stderr
             and "did you mean turtlebot3_waffle.urdf.xacro?" in result.stderr)

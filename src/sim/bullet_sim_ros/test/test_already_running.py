@@ -11,7 +11,7 @@ import psutil
 import pytest
 
 from bullet_sim_ros import already_running
-from bullet_sim_ros.already_running import Sign, is_online, registering, sign_of_life, to_kill
+from bullet_sim_ros.already_running import Sign, registering, sign_of_life, to_kill
 
 LIMIT = 60.0  # s
 NAME = "/gazebo"
@@ -126,8 +126,3 @@ def test_one_that_hangs_while_it_registers_does_not_block_for_ever(monkeypatch):
     monkeypatch.setattr(already_running, "TURN_TIME", 0.1)
     with registering("http://a:1/", NAME), registering("http://a:1/", NAME):
         pass
-
-
-@pytest.mark.parametrize("uri", ["", "localhost", "http://localhost:x", "http://localhost:99999"])
-def test_nothing_is_online_at_what_is_no_uri(uri):
-    assert not is_online(uri)

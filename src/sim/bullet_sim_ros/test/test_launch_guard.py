@@ -73,7 +73,7 @@ def test_other_programs_choose_their_master_later(refusing):
 @pytest.mark.parametrize("words", [["-p", "11399"], ["-p11399"], ["--port=11399"]])
 def test_a_port_of_its_own_counts(refusing, monkeypatch, words):
     uris = []
-    monkeypatch.setattr(launch_guard, "is_online", lambda uri: uri == "http://localhost:11399")
+    monkeypatch.setattr(launch_guard, "listens", lambda uri: uri == "http://localhost:11399")
     monkeypatch.setattr(only_simulator, "refusal", lambda uri, _name: uris.append(uri) or ())
     launch_guard.refusal_of([*ROSLAUNCH, *words, "gazebo_ros", "empty_world.launch"])
     assert uris == ["http://localhost:11399"]
@@ -81,7 +81,7 @@ def test_a_port_of_its_own_counts(refusing, monkeypatch, words):
 
 @pytest.mark.parametrize("online, clock", [(False, True), (True, False)])
 def test_without_a_simulator_at_the_master_no_file_is_read(refusing, monkeypatch, online, clock):
-    monkeypatch.setattr(launch_guard, "is_online", lambda _uri: online)
+    monkeypatch.setattr(launch_guard, "listens", lambda _uri: online)
     monkeypatch.setattr(launch_guard, "may_simulate", lambda _uri: clock)
     monkeypatch.setattr(launch_guard, "simulators_of", lambda *_: pytest.fail("read"))
     for words in ([], ["-p", "11399"]):

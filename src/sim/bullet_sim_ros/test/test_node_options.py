@@ -62,15 +62,6 @@ def test_a_value_that_makes_no_sense_is_named(capsys, option, value, said):
     assert f"{value!r} {said}" in capsys.readouterr().err
 
 
-def test_without_a_master_it_says_so_and_waits(monkeypatch, capsys):
-    looks = iter((False, False, False, True))
-    monkeypatch.setattr(rosgraph, "is_master_online", lambda: next(looks))
-    monkeypatch.setattr("time.sleep", lambda _seconds: None)
-    node.wait_for_master()
-    assert "No ROS master - start roscore to continue..." in capsys.readouterr().err
-    assert next(looks, "all taken") == "all taken"
-
-
 @pytest.mark.parametrize("lost", ["read_node_parameters", "open_network"])
 def test_a_master_that_ends_meanwhile_is_one_line(monkeypatch, capsys, caplog, lost):
     """Chaos: race, seed 106, restarts the master while the simulator starts."""

@@ -4,10 +4,10 @@ import argparse
 import ctypes
 import os
 import signal
-import socket
 import sys
 import time
-from urllib.parse import urlsplit
+
+from node_basics.listening import listens
 
 from bullet_sim import __version__
 
@@ -18,15 +18,6 @@ HOW_TO_LOOK = (
 )
 POLL_PERIOD = 2.0  # s
 PR_SET_NAME = 15  # of prctl(2)
-
-
-def master_is_there() -> bool:
-    uri = urlsplit(os.environ.get("ROS_MASTER_URI", "http://localhost:11311"))
-    try:
-        socket.create_connection((uri.hostname, uri.port or 11311), timeout=POLL_PERIOD).close()
-    except OSError:
-        return False
-    return True
 
 
 def main() -> None:
@@ -40,7 +31,7 @@ def main() -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: sys.exit(0))
     print(f"[gzclient] {HOW_TO_LOOK}", flush=True)
-    seen = False
-    while os.getppid() == parent and ((there := master_is_there()) or not seen):
+    master, seen = os.environ.get("ROS_MASTER_URI", "http://localhost:11311"), False
+    while os.getppid() == parent and ((there := listens(master)) or not seen):
         seen |= there
         time.sleep(POLL_PERIOD)

@@ -1,12 +1,9 @@
 """What runs on this master, by the services that it offers."""
 
-import socket
-from urllib.parse import urlsplit
-
 import rosgraph
 import rospy
 
-ANSWER_TIME = 1.0  # s, wall, to connect
+from node_basics.listening import listens
 
 
 def simulators(service: str = "spawn_urdf_model") -> list[str]:
@@ -27,8 +24,6 @@ def offering(ending: str) -> list[str]:
 
 def _listens(master: rosgraph.Master, service: str) -> bool:
     try:
-        place = urlsplit(master.lookupService(service))
-        socket.create_connection((place.hostname, place.port), ANSWER_TIME).close()
-    except (OSError, ValueError, rosgraph.MasterException):
+        return listens(master.lookupService(service))
+    except (OSError, rosgraph.MasterException):
         return False
-    return True

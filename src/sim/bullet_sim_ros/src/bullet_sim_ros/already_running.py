@@ -21,6 +21,7 @@ from urllib.parse import urlsplit
 from xml.parsers.expat import ExpatError
 
 import psutil
+from node_basics.listening import listens
 from rosgraph.names import get_ros_namespace, load_mappings, ns_join, resolve_name
 
 from bullet_sim_ros.names import CLOCK
@@ -43,16 +44,6 @@ def full_name(default: str) -> str:
     """The name that rospy.init_node(default) will register, before it does so."""
     name = load_mappings(sys.argv).get("__name", default)
     return resolve_name(name, ns_join(get_ros_namespace(), name))
-
-
-def is_online(master_uri: str) -> bool:
-    """Whether something listens at this URI; no longer than ANSWER_TIME, unlike rosgraph's."""
-    try:
-        place = urlsplit(master_uri)
-        socket.create_connection((place.hostname, place.port), ANSWER_TIME).close()
-    except (OSError, TypeError, ValueError):  # the latter two: it is no URI
-        return False
-    return True
 
 
 def may_simulate(master_uri: str) -> bool:
@@ -78,7 +69,7 @@ def sign_of_life(master_uri: str, name: str) -> Sign:
         socket.getaddrinfo(urlsplit(uri).hostname, None)
     except OSError:
         return Sign.UNKNOWN
-    if not is_online(uri):
+    if not listens(uri):
         return Sign.GONE
     try:
         _, _, told = xmlrpc.client.ServerProxy(uri, ImpatientTransport(ANSWER_TIME)).getName(name)

@@ -12,7 +12,10 @@ import re
 import sys
 from pathlib import Path
 
-from bullet_sim_ros.already_running import is_online, may_simulate
+from node_basics.listening import listens
+from node_basics.refusing import REFUSED
+
+from bullet_sim_ros.already_running import may_simulate
 
 _OWN_PORT = re.compile(r"(?:^| )(?:-p|--port)[ =]?(\d+)")  # of roslaunch's master
 SERVERS = ("gzserver", "gazebo", "debug", "perf")  # of gazebo_ros
@@ -23,7 +26,7 @@ def main() -> int:
     refused = refusal_of(_command_line(os.getppid()))
     if refused:
         print(refused, file=sys.stderr)
-        return 1
+        return REFUSED
     sys.stdout.write(" ".join(sys.argv[1:]))
     return 0
 
@@ -40,7 +43,7 @@ def refusal_of(command: list[str]) -> str:
         return ""
     own_port = _OWN_PORT.search(" ".join(words))
     uri = f"http://localhost:{own_port[1]}" if own_port else os.environ.get("ROS_MASTER_URI", "")
-    if not (is_online(uri) and may_simulate(uri)):
+    if not (listens(uri) and may_simulate(uri)):
         return ""
     # Only now, as these take half a second to load.
     import roslaunch

@@ -4,7 +4,6 @@ import argparse
 import gc
 import logging
 import sys
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from http.client import HTTPException
@@ -13,6 +12,7 @@ from typing import NoReturn
 
 import rosgraph
 import rospy
+from node_basics.listening import wait_for_master
 from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
@@ -67,6 +67,8 @@ SWITCH_INTERVAL = 0.0005
 FASTEST = 1000.0  # largest real-time factor; 0 means no limit
 LATEST = 4e9  # s; ROS times end at 2**32 s
 MASTER_LOST = (ConnectionError, HTTPException)  # raised if the master ends during a call
+# As gazebo_ros_api_plugin.cpp, Load, says twice a second.
+NO_MASTER = "No ROS master - start roscore to continue... (looked for it at %s)"
 ENGINES = ("ode", "bullet", "dart", "simbody")  # those of Gazebo 11
 
 
@@ -123,20 +125,6 @@ def open_world(options: argparse.Namespace, resources: Resources) -> World:
     return world
 
 
-def wait_for_master() -> None:
-    """Say once that roscore is missing, then wait for it.
-
-    gazebo_ros_api_plugin.cpp, Load, says it twice a second.
-    """
-    if rosgraph.is_master_online():
-        return
-    said = ("No ROS master - start roscore to continue... (looked for it at "
-            f"{rosgraph.get_master_uri()})")
-    print(f"[WARN] {said}", file=sys.stderr, flush=True)
-    while not rosgraph.is_master_online():
-        time.sleep(0.5)
-
-
 def check_engine(name: str) -> None:
     """Log an error if the engine is not one of Gazebo's four; the simulation starts anyway."""
     if name not in ENGINES:
@@ -186,7 +174,8 @@ def main() -> int:
     if not rosgraph.is_master_online() and (unreadable := unreadable_world(options.world)):
         print(f"[FATAL] {unreadable}", file=sys.stderr)
         return 1
-    wait_for_master()
+    uri = rosgraph.get_master_uri()
+    wait_for_master(uri, f"[WARN] {NO_MASTER % uri}")
     send_promptly()
     keep_every_publisher()
     try:

@@ -11,12 +11,12 @@ from pathlib import Path
 
 import rosgraph
 import rospy
+from node_basics.listening import listens
 
 from bullet_sim_ros import names
 from bullet_sim_ros.already_running import (
     Sign,
     full_name,
-    is_online,
     registering,
     sign_of_life,
     to_kill,
@@ -85,7 +85,7 @@ def _what_runs(master_uri: str, name: str) -> str:
 def main() -> int:
     """Print why no simulator may start, if so; returns the exit code."""
     uri = rosgraph.get_master_uri()
-    refused = refusal(uri, f"/{DEFAULT_NAME}") if is_online(uri) else ()
+    refused = refusal(uri, f"/{DEFAULT_NAME}") if listens(uri) else ()
     if refused:
         print(refused[0] % refused[1:], file=sys.stderr)
     return 1 if refused else 0

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy
-from headless_highgui.old_names import CV2_NAMES, NUMPY_BUILTINS, NUMPY_NAMES
+from python_amendments.old_names import CV2_NAMES, NUMPY_BUILTINS, NUMPY_NAMES
 
 from bullet_sim_ros.interface import APPROXIMATED
 from workspace_needs.check.findings import ABSENT, UNCHECKED, Finding, problem

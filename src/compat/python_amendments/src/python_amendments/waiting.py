@@ -5,14 +5,15 @@ For a ROS master, the first image, scan or odometry, a service, a simulator that
 
 import contextlib
 import difflib
+import os
 import re
 import signal
-import socket
 import sys
 import threading
-import time
-from urllib.parse import urlsplit
+from pathlib import PurePath
 
+from node_basics import listening
+from node_basics.listening import listens
 from terminal_language import translated
 
 SEEN = ("nav_msgs/Odometry", "sensor_msgs/CompressedImage", "sensor_msgs/Image",
@@ -24,13 +25,11 @@ GRACE = 5.0  # s, wall: a node that ends together with its simulator says nothin
 OF_A_LAUNCH = "__log:="  # an argument of its nodes, which start before what they wait for
 LAUNCH_GRACE = 20.0  # s, wall
 IS_URI = re.compile(r"http://[^/:]+:\d{1,5}/?")
-ANSWER_TIME = 1.0  # s, wall
-LOOK_AGAIN = 0.2  # s, wall
-NO_MASTER = ("No ROS master at %s. Type roscore (or start the course) in another terminal; this "
-             "program then goes on by itself.")
+NO_MASTER = ("No ROS master at %s. Type roscore in another terminal, or start the course there: "
+             "%s; this program then goes on by itself.")
 BAD_URI = "ROS_MASTER_URI is %s, and must be as http://localhost:11311"
 NO_SIMULATOR = ("Nothing on %s yet: nobody publishes it, and no simulator runs. Start the course "
-                "in another terminal; this program then goes on by itself.")
+                "in another terminal: %s; this program then goes on by itself.")
 OTHER_TOPIC = ("Nothing on %s yet: nobody publishes it. If %s is meant, end this program and start "
                "it with %s:=%s.")
 NO_SENSOR = "Nothing on %s yet: no robot of the simulator that runs has such a sensor."
@@ -42,6 +41,17 @@ AGAIN = ("The simulator has ended: no more messages on %s. When the course is st
          "program goes on by itself.")
 ALL_AGAIN = ("The simulator and the ROS master have ended: no more messages on %s. Press Ctrl-C; "
              "start the course, then this program again.")
+# What starts the course of a package's programs, or of a topic in other programs.
+COURSES = {
+    "ai_robot_tracking": "roslaunch ai_robot_tracking start_tracking.launch",
+    "car_control": "roslaunch racecar_description car_control.launch",
+    "lane_keeping": "roslaunch lane_keeping lane.launch",
+    "learning_autorace": "roslaunch learning_autorace autorace.launch",
+    "learning_laser": "roslaunch learning_laser hall.launch",
+    "/camera": "roslaunch lane_keeping lane.launch",
+    "/camera/image": "roslaunch learning_autorace autorace.launch",
+    "/camera/image_raw": "roslaunch racecar_description car_control.launch"}
+LINE_COURSE = "roslaunch learning_topic 0course.launch"
 HEARD = object()
 SAID = set()  # forms of lines
 
@@ -80,10 +90,8 @@ def wait_for_master():
         return
     if not IS_URI.fullmatch(uri):
         print(translated(BAD_URI % uri), file=sys.stderr, flush=True)
-    elif not listens(uri):
-        print(translated(NO_MASTER % uri), file=sys.stderr, flush=True)
-        while not listens(uri) and not rospy.is_shutdown():
-            time.sleep(LOOK_AGAIN)
+    else:
+        listening.wait_for_master(uri, translated(NO_MASTER % (uri, course())))
 
 
 def amend_services(services):
@@ -181,7 +189,13 @@ def tell_of_silence(name, kind):
     elif by_simulators:
         tell_once(NO_SENSOR, name)
     else:
-        tell_once(NO_SIMULATOR, name)
+        tell_once(NO_SIMULATOR, name, course(name))
+
+
+def course(topic=""):
+    """The command that starts what this program, or one that reads the topic, is written for."""
+    known = [*PurePath(os.path.realpath(sys.argv[0])).parts[::-1], topic]
+    return next((COURSES[word] for word in known if word in COURSES), LINE_COURSE)
 
 
 def tell_of_service(service):
@@ -225,17 +239,3 @@ def tell(topic, simulator):
         return
     form = AGAIN if listens(rosgraph.get_master_uri()) else ALL_AGAIN
     rospy.logwarn("%s", translated(form % topic))
-
-
-def listens(uri):
-    """Whether something listens at a URI."""
-    place = urlsplit(uri)
-    try:
-        socket.create_connection((place.hostname, place.port), ANSWER_TIME).close()
-    except OSError:
-        return False
-    return True
-
-
-AMENDED = {"rospy.client": amend_client, "rospy.impl.tcpros_service": amend_services,
-           "rospy.topics": amend_topics}

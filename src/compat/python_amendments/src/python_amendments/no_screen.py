@@ -1,11 +1,7 @@
-"""Puts our window functions into cv2 where its own cannot work; says what is there for Tk's.
-
-And lets cv_bridge swap red and blue by OpenCV: its own way takes twice as long.
-"""
+"""Puts our window functions into cv2 where its own cannot work; says what is there for Tk's."""
 
 import os
 import re
-import sys
 
 FUNCTIONS = (
     "namedWindow imshow waitKey waitKeyEx pollKey startWindowThread destroyWindow "
@@ -24,11 +20,11 @@ def has_screen(cv2):
     return built_in and bool(os.environ.get("DISPLAY"))
 
 
-def install(cv2):
+def amend_cv2(cv2):
     """Replace cv2's window functions, unless it has a screen; say whether we did."""
     if has_screen(cv2):
         return False
-    from headless_highgui.windows import Windows  # and NumPy, which a Tk script may not need
+    from python_amendments.windows import Windows  # and NumPy, which a Tk script may not need
 
     windows = Windows(cv2)
     for name in FUNCTIONS:
@@ -52,21 +48,3 @@ def amend_tkinter(tkinter):
             raise tkinter.TclError(f"{error}; {WITHOUT_TK}") from None
 
     tkinter.Tk.__init__ = __init__
-
-
-def amend_cv_bridge(boost):
-    """Replace `cvtColor2` of cv_bridge.boost.cv_bridge_boost for rgb8 to bgr8 and back.
-
-    That is the larger part of what a follower adds to an image before it answers. Other encodings
-    and whatever is not (h, w, 3) uint8 are left to the function that was there.
-    """
-    convert = boost.cvtColor2
-
-    def cvtColor2(image, encoding, wanted):
-        colours = {encoding, wanted} == {"rgb8", "bgr8"} and image.ndim == 3
-        if not colours or image.shape[2] != 3 or image.dtype != "uint8" or not image.size:
-            return convert(image, encoding, wanted)
-        cv2 = sys.modules["cv2"]  # cv_bridge has imported it
-        return cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
-
-    boost.cvtColor2 = cvtColor2

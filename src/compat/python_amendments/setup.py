@@ -5,7 +5,7 @@ from setuptools import setup
 
 setup(
     **generate_distutils_setup(
-        packages=["headless_highgui"],
+        packages=["python_amendments"],
         package_dir={"": "src"},
     )
 )

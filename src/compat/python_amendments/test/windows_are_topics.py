@@ -32,4 +32,4 @@ class WindowsAreTopics(unittest.TestCase):
 
 if __name__ == "__main__":
     rospy.init_node("windows_are_topics")
-    rostest.rosrun("headless_highgui", "windows_are_topics", WindowsAreTopics, sys.argv)
+    rostest.rosrun("python_amendments", "windows_are_topics", WindowsAreTopics, sys.argv)

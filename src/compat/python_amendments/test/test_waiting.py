@@ -13,9 +13,10 @@ from types import SimpleNamespace
 import pytest
 import rosgraph
 import rospy
-from headless_highgui import waiting
+from python_amendments import waiting
 
 LIMIT = 60.0  # s
+SRC = Path(__file__).resolve().parents[3]
 IMAGE, TOPIC = "sensor_msgs/Image", "/camera/rgb/image_raw"
 
 
@@ -150,7 +151,25 @@ def test_why_no_image_comes(said, master):
         "Nothing on /base_scan yet: no robot of the simulator that runs has such a sensor.",
         f"Nothing on {TOPIC} yet, though it is published: is the simulation paused?",
         "Nothing on /camera/image_raw yet: nobody publishes it, and no simulator runs. Start the "
-        "course in another terminal; this program then goes on by itself."]
+        "course in another terminal: roslaunch racecar_description car_control.launch; this "
+        "program then goes on by itself."]
+
+
+@pytest.mark.parametrize(("program", "topic", "typed"), [
+    ("learning_topic/scripts/01follower.py", TOPIC, "learning_topic 0course.launch"),
+    ("car_control/scripts/lane_follow.py", "", "racecar_description car_control.launch"),
+    ("lessons/lane_keeping/scripts/learning_node.py", "", "lane_keeping lane.launch"),
+    ("/home/me/mine.py", "/camera", "lane_keeping lane.launch"),
+    ("/home/me/mine.py", "/scan", "learning_topic 0course.launch")])
+def test_the_course_of_a_program(monkeypatch, program, topic, typed):
+    monkeypatch.setattr(sys, "argv", [str(SRC / program)])
+    assert waiting.course(topic) == f"roslaunch {typed}"
+
+
+@pytest.mark.parametrize("command", [*waiting.COURSES.values(), waiting.LINE_COURSE])
+def test_each_course_has_its_launch_file(command):
+    _, package, file = command.split()
+    assert list(SRC.glob(f"**/{package}/launch/{file}"))
 
 
 def test_a_service_that_nobody_offers(said, master):
@@ -240,10 +259,10 @@ def node(words, **environment):
 
 
 @pytest.mark.parametrize(("language", "line"), [
-    ("en", "No ROS master at {0}. Type roscore (or start the course) in another terminal; this "
-           "program then goes on by itself.\n"),
-    ("zh_CN", "{0} 上没有 ROS master。请在另一个终端里输入 roscore（或启动跑道），"
-              "这个程序会自己继续。\n")])
+    ("en", "No ROS master at {0}. Type roscore in another terminal, or start the course there: "
+           "roslaunch learning_topic 0course.launch; this program then goes on by itself.\n"),
+    ("zh_CN", "{0} 上没有 ROS master。请在另一个终端里输入 roscore，或在那里启动跑道："
+              "roslaunch learning_topic 0course.launch；这个程序会自己继续。\n")])
 def test_without_a_master_a_line_and_ctrl_c_ends_it_at_once(gone, language, line):
     waits = node("import rospy; rospy.init_node('lesson')", ROS_MASTER_URI=gone,
                  LC_ALL="C.UTF-8", LANGUAGE=language)

@@ -10,11 +10,12 @@ import types
 
 import numpy as np
 import pytest
-from headless_highgui import hook, windows
-from headless_highgui.windows import Windows, ros_label
+from python_amendments import cv_bridge_colours, no_screen, windows
+from python_amendments.windows import Windows, ros_label
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1] / "src"
 LANGUAGE = SOURCE.parents[1] / "terminal_language/src"
+BASICS = SOURCE.parents[2] / "interfaces/node_basics/src"
 
 
 def fake_cv2(gui="NONE"):
@@ -23,12 +24,12 @@ def fake_cv2(gui="NONE"):
     module.getBuildInformation = lambda: f"General:\n  GUI:                           {gui}\n"
     module.error = type("error", (Exception,), {})
     module.WND_PROP_VISIBLE = 4
-    for name in hook.FUNCTIONS:
+    for name in no_screen.FUNCTIONS:
         setattr(module, name, None)
     return module
 
 
-def run_python(code, env=None, path=(SOURCE, LANGUAGE)):
+def run_python(code, env=None, path=(SOURCE, LANGUAGE, BASICS)):
     """Run code in a fresh Python that has only these folders on PYTHONPATH."""
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path)), **(env or {})}
     return subprocess.run(
@@ -43,15 +44,15 @@ def run_python(code, env=None, path=(SOURCE, LANGUAGE)):
 def test_steps_aside_only_with_gui_and_display(monkeypatch, gui, display, steps_aside):
     monkeypatch.setenv("DISPLAY", display)
     cv2 = fake_cv2(gui)
-    assert hook.install(cv2) is not steps_aside
+    assert no_screen.amend_cv2(cv2) is not steps_aside
     assert (cv2.imshow is None) is steps_aside
 
 
 def test_every_hooked_function_is_there():
     cv2 = fake_cv2()
     os.environ.pop("DISPLAY", None)
-    hook.install(cv2)
-    assert all(callable(getattr(cv2, name)) for name in hook.FUNCTIONS)
+    no_screen.amend_cv2(cv2)
+    assert all(callable(getattr(cv2, name)) for name in no_screen.FUNCTIONS)
 
 
 @pytest.mark.parametrize(
@@ -197,7 +198,7 @@ def test_wait_key_0_returns_when_the_node_is_shut_down(monkeypatch):
     answers = iter([False, False, True])
     said = []
     rospy = types.SimpleNamespace(is_shutdown=lambda: next(answers), logwarn=said.append)
-    monkeypatch.setattr("headless_highgui.windows.running_rospy", lambda: rospy)
+    monkeypatch.setattr("python_amendments.windows.running_rospy", lambda: rospy)
     assert Windows(fake_cv2()).waitKey(0) == -1
     assert len(said) == 1 and "Ctrl-C" in said[0]
 
@@ -243,14 +244,15 @@ def test_an_unchanged_script_runs_with_the_real_cv2(line):
     )
     done = run_python(code, {"DISPLAY": ""})
     assert done.returncode == 0, done.stderr
-    assert done.stdout.split("\n")[:2] == ["-1", "headless_highgui.windows (1, 1)"]
+    assert done.stdout.split("\n")[:2] == ["-1", "python_amendments.windows (1, 1)"]
     assert done.stderr.count("\n") == 1 and "no screen" in done.stderr
 
 
 def test_python_without_cv2_loads_nothing_more():
     code = (
         "import sys, json\n"
-        "print([m for m in sys.modules if m.startswith(('headless', 'cv2', 'numpy', 'rospy'))])"
+        "print([m for m in sys.modules "
+        "if m.startswith(('python_amendments', 'cv2', 'numpy', 'rospy'))])"
     )
     done = run_python(code)
     assert done.stdout.strip() == "[]" and done.stderr == ""
@@ -272,8 +274,8 @@ def test_a_missing_cv2_is_still_an_import_error(tmp_path):
 
 
 def test_a_broken_hook_does_not_break_cv2(tmp_path):
-    (tmp_path / "headless_highgui").mkdir()
-    (tmp_path / "headless_highgui" / "hook.py").write_text("raise RuntimeError('broken')")
+    (tmp_path / "python_amendments").mkdir()
+    (tmp_path / "python_amendments" / "no_screen.py").write_text("raise RuntimeError('broken')")
     (tmp_path / "usercustomize.py").write_text((SOURCE / "usercustomize.py").read_text())
     done = run_python("import cv2; print(cv2.__name__)", path=[tmp_path])
     assert done.stdout.strip() == "cv2" and "broken" in done.stderr
@@ -352,7 +354,7 @@ def test_only_red_and_blue_of_eight_bits_are_swapped_by_opencv(monkeypatch):
     boost = types.SimpleNamespace(cvtColor2=lambda *given: asked.append(given[1:]))
     monkeypatch.setitem(sys.modules, "cv2", types.SimpleNamespace(
         COLOR_RGB2BGR=4, cvtColor=lambda image, _code: image[..., ::-1]))
-    hook.amend_cv_bridge(boost)
+    cv_bridge_colours.amend(boost)
     image = np.arange(24, dtype=np.uint8).reshape(2, 4, 3)
     for pair in (("rgb8", "bgr8"), ("bgr8", "rgb8")):
         assert np.array_equal(boost.cvtColor2(image, *pair), image[..., ::-1])

@@ -7,7 +7,7 @@ import types
 from pathlib import Path
 
 import pytest
-from headless_highgui import old_names
+from python_amendments import old_names
 
 SOURCE = Path(__file__).resolve().parents[1] / "src"
 LANGUAGE = SOURCE.parents[1] / "terminal_language/src"

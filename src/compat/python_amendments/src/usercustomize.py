@@ -10,18 +10,29 @@ import collections
 import os
 import sys
 import time
+from importlib import import_module
 from importlib.machinery import PathFinder
 
-BRIDGE = "cv_bridge.boost.cv_bridge_boost"
-AMENDED = {BRIDGE, "catkin_pkg.packages", "cv2", "joint_state_publisher", "numpy",
-           "roslaunch.loader", "rospy.client", "rospy.impl.tcpros_service", "rospy.topics",
-           "tkinter", "yaml"}
+# A module, and what amends it after its import: files and functions of python_amendments.
+AMENDMENTS = {
+    "catkin_pkg.packages": ["launch_end.amend_packages"],
+    "cv2": ["old_names.amend_cv2", "no_screen.amend_cv2"],
+    "cv_bridge.boost.cv_bridge_boost": ["cv_bridge_colours.amend"],
+    "joint_state_publisher": ["old_names.amend_joint_state_publisher"],
+    "numpy": ["old_names.amend_numpy"],
+    "roslaunch.loader": ["launch_end.amend_loader"],
+    "rospy.client": ["waiting.amend_client"],
+    "rospy.impl.tcpros_service": ["waiting.amend_services"],
+    "rospy.topics": ["waiting.amend_topics"],
+    "tkinter": ["no_screen.amend_tkinter"],
+    "yaml": ["old_names.amend_yaml"],
+}
 
 
 class Watch:
     """A finder that lets every import pass; it amends each of those modules after its import."""
 
-    waited_for = set(AMENDED)
+    waited_for = set(AMENDMENTS)
 
     @classmethod
     def find_spec(cls, name, _path=None, _target=None):
@@ -41,12 +52,12 @@ class Watch:
     @staticmethod
     def load(load, module):
         load(module)
-        for amend in (put_old_names_back, give_windows, hasten_cv_bridge, tell_of_waiting,
-                      end_launch):
+        for amendment in AMENDMENTS[module.__name__]:
+            file, amend = amendment.split(".")
             try:
-                amend(module)
+                getattr(import_module(f"python_amendments.{file}"), amend)(module)
             except Exception as error:  # a script that needs none of it must not fail here
-                print(f"headless_highgui: {module.__name__} is not amended: {error}",
+                print(f"python_amendments: {module.__name__} is not amended: {error}",
                       file=sys.stderr)
 
 
@@ -65,51 +76,13 @@ def take_own_distutils():
         hack.remove_shim()
 
 
-def put_old_names_back(module):
-    from headless_highgui.old_names import AMENDED
-
-    AMENDED.get(module.__name__, lambda _: None)(module)
-
-
-def give_windows(module):
-    if module.__name__ in ("cv2", "tkinter"):
-        from headless_highgui.hook import amend_tkinter, install
-
-        (install if module.__name__ == "cv2" else amend_tkinter)(module)
-
-
-def hasten_cv_bridge(module):
-    if module.__name__ == BRIDGE:
-        from headless_highgui.hook import amend_cv_bridge
-
-        amend_cv_bridge(module)
-
-
-def tell_of_waiting(module):
-    if module.__name__.startswith("rospy."):
-        from headless_highgui import waiting
-
-        waiting.AMENDED[module.__name__](module)
-
-
-def end_launch(module):
-    if module.__name__ == "roslaunch.loader":
-        from headless_highgui.launch_end import amend_loader
-
-        amend_loader(module)
-    elif module.__name__ == "catkin_pkg.packages" and is_launcher():
-        from headless_highgui.launch_end import amend_packages
-
-        amend_packages(module)
-
-
 def watch_standard():
     """collections and time are imported already: what amends them is, at the first old name."""
     def first_asked(module):
         def __getattr__(name):
             if name.startswith("__"):
                 raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
-            from headless_highgui import old_names
+            from python_amendments import old_names
 
             old_names.HERE += (first_asked.__code__.co_filename,)  # by the link in the devel space
             for each in (collections, time):

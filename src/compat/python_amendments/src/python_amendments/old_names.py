@@ -201,7 +201,3 @@ def aruco_names(cv2):
         "GridBoard_create": (grid, "cv2.aruco.GridBoard((columns, rows), ...)"),
         "CharucoBoard_create": (charuco, "cv2.aruco.CharucoBoard((columns, rows), ...)"),
     }
-
-
-AMENDED = {"cv2": amend_cv2, "numpy": amend_numpy, "yaml": amend_yaml,
-           "joint_state_publisher": amend_joint_state_publisher}

@@ -1,1 +1,0 @@
-"""OpenCV's windows as image topics without a screen, and names that older libraries had."""

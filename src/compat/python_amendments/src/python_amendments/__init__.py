@@ -1,0 +1,1 @@
+"""What usercustomize.py amends in Python modules, after their import."""
