@@ -159,8 +159,8 @@ def test_why_no_image_comes(said, master):
     ("learning_topic/scripts/01follower.py", TOPIC, "learning_topic 0course.launch"),
     ("car_control/scripts/lane_follow.py", "", "racecar_description car_control.launch"),
     ("lessons/lane_keeping/scripts/learning_node.py", "", "lane_keeping lane.launch"),
-    ("/home/me/mine.py", "/camera", "lane_keeping lane.launch"),
-    ("/home/me/mine.py", "/scan", "learning_topic 0course.launch")])
+    ("mine.py", "/camera", "lane_keeping lane.launch"),
+    ("mine.py", "/scan", "learning_topic 0course.launch")])
 def test_the_course_of_a_program(monkeypatch, program, topic, typed):
     monkeypatch.setattr(sys, "argv", [str(SRC / program)])
     assert waiting.course(topic) == f"roslaunch {typed}"

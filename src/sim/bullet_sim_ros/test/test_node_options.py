@@ -122,6 +122,7 @@ def test_a_world_that_is_not_there_is_a_fatal_line_and_the_exit_code(monkeypatch
                                      "--physics", "newton"])
     verbose = []
     monkeypatch.setattr(rosgraph, "is_master_online", lambda: True)
+    monkeypatch.setattr(node, "wait_for_master", lambda *_: None)
     monkeypatch.setattr(node, "register", lambda _world: True)
     monkeypatch.setattr(node, "send_promptly", lambda: None)
     monkeypatch.setattr(node, "keep_every_publisher", lambda: None)
