@@ -123,9 +123,15 @@ OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its pla
 OF_VALUES = ("none", "unknown", "a number", "this user", "parent link", "child link", "link",
              "joint", "model", "sensor", "function call", "function definition", "class definition",
              "literal", "expression", "attribute", "simulated clock /clock", "the disk", "driving")
-OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "ignored", "works",  # its words
+OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "hint", "ignored",
+            "works",  # its words
             "world {0} ({1} models)", "model {0} ({1} links, {2} joints)", "the text",
-            "{0}. Arg xml is {1}",  # roslaunch's
+            "{0}. Arg xml is {1}", "while processing {0}: {1}",  # roslaunch's
+            "<{0}> tag is missing required attribute: {1}. Node xml is {2}",
+            "error loading <rosparam> tag: {0} XML is {1}", "file does not exist [{0}]",
+            "Invalid <param> tag: {0}. Param xml is {1}", 'Unknown CMake command "{0}".',
+            "Assertion failed: file '{0}' does not exist. Message: {1}",
+            "Cannot locate message [{0}] in package [{1}] with paths {2}",
             "{0} includes <{1}>, and the C++ API of Gazebo is not here",
             "{0} packages: all that Debian has for them is installed",  # of deps
             "{0} packages: to be installed: {1}", "{0} packages: installing {1}")

@@ -84,7 +84,8 @@ def built(request, tmp_path_factory) -> tuple[Path, str]:
 def test_what_nobody_has_is_left_out_in_a_line_and_the_rest_is_built(built):
     lines = [line for line in built[1].splitlines()
              if " is left out: " in line and "target" not in line]
-    assert [line.split()[0] for line in lines] == ["arm", "hand"]
+    assert [line.split()[0] for line in lines] == ["arm", "hand"] * 2  # and again at the end
+    assert built[1].splitlines()[-2:] == lines[2:] == lines[:2]
     assert lines[0].startswith("arm is left out: moveit_core: MoveIt is not in Debian")
     names = {path.parent.name for path in built[0].glob("devel*/**/share/*/cmake")}
     assert {"wheel", "guarded", "uses_effects"} <= names and not {"arm", "hand"} & names
@@ -97,6 +98,22 @@ def test_a_header_in_a_comment_or_behind_a_condition_leaves_nothing_out(built):
 def test_a_missing_header_is_found_through_another_packages_header(built):
     assert built[1].count("target effect is left out: ") == 1
     assert "include/effects/a.h includes <gazebo/gazebo.hh>" in built[1]
+
+
+@pytest.mark.parametrize("line, built", [
+    *((line, "") for line in TOOLS.values()),
+    ("catkin_make --only-pkg-with-deps arm", "wheel"),
+    ("catkin_make -DCATKIN_WHITELIST_PACKAGES=arm", "wheel"),
+    ("catkin_make --pkg arm", "wheel")])  # which ends with make's own error
+def test_a_build_that_leaves_out_all_that_was_asked_for_has_failed(tmp_path, line, built):
+    add(tmp_path / "src", "arm", "moveit_core")
+    if built:
+        add(tmp_path / "src", built, "rospy")
+    done = in_terminal(f"cd {tmp_path} && {line}")
+    *_, before, last = done.stdout.splitlines()
+    assert done.returncode == 1 and "arm is left out: moveit_core: " in before + last, done.stdout
+    assert "No such file" in done.stdout or last == (
+        "nothing of your own is built: each package that was asked for is left out, see above")
 
 
 @pytest.mark.parametrize("tool", TOOLS)

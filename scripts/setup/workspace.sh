@@ -33,7 +33,7 @@ build_workspace() {
     python3 src/workspace_needs/scripts/catkin_make --no-color "-DPYTHON_EXECUTABLE=$venv/bin/python3" "-DPython_EXECUTABLE=$venv/bin/python3" \
     "-DCPP_LESSONS:BOOL=$cpp" ||
     fail_with_cause $"catkin_make failed"
-  grep -a ' is left out: ' "$state/build.log" | translated || true
+  grep -a ' is left out: ' "$state/build.log" | awk '!said[$0]++' | translated || true
   [ "$cpp" = ON ] || cpp_stand_ins
   if [ -d src/navigation/nav_algorithms ] && [ ! -e src/navigation/CATKIN_IGNORE ]; then
     PYTHONPATH=src/navigation/nav_algorithms/src logged compile "$venv/bin/python3" -m nav_algorithms.warm_up ||

@@ -7,6 +7,7 @@ import pytest
 from workspace_needs.check.command import main
 
 sys.path.insert(0, str(Path(__file__).parent))
+from workspaces import add_package
 
 
 @pytest.fixture
@@ -24,7 +25,8 @@ def check(tmp_path, capsys):
 def package(tmp_path):
     """A package with files of these names and texts; its folder."""
     def make(**texts: str) -> str:
-        (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
+        if not (tmp_path / "CMakeLists.txt").exists():
+            add_package(tmp_path.parent, tmp_path.name)
         for name, text in texts.items():
             (tmp_path / name.replace("__", ".")).write_text(text)
         return str(tmp_path)

@@ -58,6 +58,32 @@ wheel: {type: velocity_controllers/JointVelocityControler, joint: j}""")
     assert "their_things" not in said
 
 
+def test_a_fault_in_a_launch_file_hides_no_other(check, tmp_path):
+    (tmp_path / "part.launch").write_text("""<launch><rosparam file="$(dirname)/none.yaml"/>
+      <node name="p" pkg="no_such_pkg" type="x"/><include file="$(find nobodys)/b.launch"/>
+      <node pkg="rospy"/></launch>""")
+    code, said = check("a.launch", """<launch>
+      <include file="$(dirname)/pard.launch"/><include file="$(find no_such_pkg)/a.launch"/>
+      <include file="$(dirname)/part.launch"/>
+      <param name="a" textfile="$(dirname)/none.txt"/><param name="b" type="int" value="x"/>
+      <node name="n" pkg="learning_topic" type="06folower_pid.py"/>
+      <node name="s" pkg="gazebo_ros" type="spawn_model" args="-param robot_description -urdf"/>
+      <node name="m" pkg="learning_topic"/><include file="$(arg nobody)"/></launch>""")
+    lines = said.splitlines()
+    assert code == 1
+    for words in (f"<include>: there is no file {tmp_path}/pard.launch (did you mean part.launch?)",
+                  "no package no_such_pkg is found", "while processing "
+                  f"{tmp_path}/part.launch: error loading <rosparam> tag: file does not exist",
+                  "part.launch: no package nobodys is", "part.launch: <node> tag is missing",
+                  "none.txt", "Invalid <param> tag: invalid literal for int", "attribute: 'type'",
+                  'no <arg name="nobody"> stands before $(arg nobody)'):
+        assert [line for line in lines if "  PROBLEM       launch file: " in line
+                and words in line], (words, said)
+    assert "node no_such_pkg/x: package no_such_pkg is not here" in said
+    assert "has no executable 06folower_pid.py here (did you mean 06follower_pid.py?)" in said
+    assert "spawn_model -param" not in said  # a file that is not there may be to set it
+
+
 def test_launch_files_that_need_arguments(package, capsys):
     folder = package(part__launch="""<launch><arg name="model"/><arg name="x" default="0"/>
       <arg name="world"/></launch>""")

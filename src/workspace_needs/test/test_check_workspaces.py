@@ -7,6 +7,7 @@ from robot_texts import LAUNCH, ROBOT
 from workspace_needs.check import workspaces
 from workspace_needs.check.command import main
 from workspace_needs.check.findings import PROBLEM, Finding, table
+from workspaces import add_package
 
 # A file is checked in a fork of this process, which must not hold engines or OpenGL of other tests.
 pytestmark = pytest.mark.processes
@@ -131,8 +132,37 @@ def test_a_folder_that_is_no_workspace_and_one_that_is_named_by_its_src(tmp_path
     assert "build: two packages are called arm: " in capsys.readouterr().out
 
 
-def test_a_package_with_nothing_to_check_is_not_said_to_work(tmp_path, capsys):
-    (tmp_path / "package.xml").write_text("<package/>")
-    assert main([str(tmp_path)]) == 0
+def test_a_package_without_anything_to_check_is_not_said_to_work(capsys):
+    assert main(["visualization_msgs"]) == 0
     said = capsys.readouterr()
-    assert said.out == "" and "there is nothing to check" in said.err
+    assert said.out == "" and "there is nothing to check: no script, robot" in said.err
+
+
+def test_a_package_that_is_left_out_of_the_build(tmp_path, capsys):
+    """The same lines as of its workspace."""
+    arm = add_package(tmp_path / "src", "arm", "moveit_core", "moveit_core")
+    hand = add_package(tmp_path / "src", "hand", "arm", "arm")
+    add_package(tmp_path / "src", "wheel", "rospyy")
+    assert main([str(tmp_path)]) == 1
+    whole = capsys.readouterr().out
+    for folder, why in ((arm, "moveit_core: MoveIt is not in"), (hand, "arm: it is left out it")):
+        assert main([str(folder)]) == 1
+        said = capsys.readouterr().out
+        assert f"PROBLEM       build: it is left out: {why}" in said
+        assert said.partition("\n\n")[0] in whole
+    assert main([str(tmp_path / "src/wheel")]) == 1
+    assert "rospyy: it will be without" in capsys.readouterr().out
+    (arm / "package.xml").write_text("<package/>")
+    assert main([str(hand)]) == 1
+    assert f"workspace {tmp_path}\n  PROBLEM       build: {arm}/pa" in capsys.readouterr().out
+
+
+def test_a_package_whose_scripts_are_all_fine(package, tmp_path, capsys):
+    folder = package(talk__py="import rospy\n", see__cpp="int main() {}\n")
+    assert main([folder]) == 0
+    said = capsys.readouterr().out
+    assert "works         scripts and C++ files (2)" in said
+    assert said.endswith("all of it will work\n")
+    package(talk__py="#!/usr/bin/env python3\nimport nobodys\n")
+    (tmp_path / "talk.py").chmod(0o755)
+    assert main([folder]) == 1 and "C++ files" not in capsys.readouterr().out

@@ -48,11 +48,12 @@ def test_what_nobody_has_stops_its_package_and_those_built_on_it(tmp_path, bare)
     source = tmp_path / "src"
     add_package(source, "arm", "moveit_core", "moveit_core")
     add_package(source, "hand", "arm", "roscpp arm")
-    add_package(source, "wheel", "roscpp rospyy", "roscpp")
+    add_package(source, "wheel", "roscpp rospyy stdmsgs", "roscpp")
     assert of(source, "arm").stops["moveit_core"].startswith("MoveIt is not in Debian")
     assert of(source, "hand").stops == {"arm": "it is left out itself"}
     wheel = of(source, "wheel")
     assert wheel.builds and "is rospy meant?" in wheel.lacks["rospyy"]
+    assert "is std_msgs meant?" in wheel.lacks["stdmsgs"]
 
 
 def test_what_another_release_has_is_said(tmp_path, bare):
@@ -230,11 +231,49 @@ def test_catkin_make_leaves_out_what_waits_for_a_package_of_debian(tmp_path, cap
     add_package(tmp_path / "src", "user", "filter", "filter")
     add_package(tmp_path / "src", "wheel", "", "")
     assert all(verdict.builds for verdict in judge(tmp_path / "src"))  # once it is installed
-    option = catkin_make_words(["-C", str(tmp_path)])[len(hook())]
+    option = catkin_make_words(["-C", str(tmp_path)])[0][len(hook())]
     assert option == "-DCATKIN_BLACKLIST_PACKAGES=filter;user"
     assert capsys.readouterr().out == (
         "filter is left out: liborocos-bfl-dev: it is not installed; type: rosrun workspace_needs "
         f"deps {tmp_path}\nuser is left out: filter: it is left out itself\n")
+
+
+MESSAGES = """add_message_files(FILES {})
+generate_messages(DEPENDENCIES std_msgs)"""
+
+
+@pytest.mark.parametrize("components, name, text, why", [
+    ("std_msgs message_generation", "Num.msg", "int46 num\n", "5: Cannot locate message [int46]"),
+    ("std_msgs message_generation", "Numm.msg", "int64 num\n", "4: Assertion failed: file '"),
+    ("std_msgs", "Num.msg", "int64 num\n", '4: Unknown CMake command "add_message_files". Add '
+     "message_generation to find_package(catkin REQUIRED COMPONENTS ...)")])
+def test_a_slip_in_a_package_of_messages(tmp_path, components, name, text, why):
+    folder = add_package(tmp_path / "src", "talk", components, components, MESSAGES.format(name))
+    (folder / "msg").mkdir()
+    (folder / "msg/Num.msg").write_text(text)
+    said, = of(tmp_path / "src", "talk").stops.items()
+    assert ": ".join(said).startswith(f"CMakeLists.txt:{why}")
+
+
+def test_a_folder_without_a_package_xml(tmp_path, capsys, bare):
+    source = tmp_path / "src"
+    (add_package(source, "arm") / "package.xml").unlink()
+    (add_package(source, "wheel") / "template").mkdir()
+    (source / "wheel/template/CMakeLists.txt").write_text("catkin_package()\n")
+    (source / "CMakeLists.txt").write_text("catkin_package()\n")
+    assert "-DCATKIN_BLACKLIST_PACKAGES=" in catkin_make_words(["-C", str(tmp_path)])[0]
+    assert capsys.readouterr().out == (
+        "arm is left out: package.xml: there is none; catkin_create_pkg makes packages with one\n")
+    (source / "wheel/package.xml").unlink()
+    assert catkin_make_words(["-C", str(tmp_path)])[1].are_all
+    assert [verdict.name for verdict in judge(source_folder(tmp_path))] == ["arm", "wheel"]
+
+
+def test_a_package_xml_that_is_not_utf8(tmp_path):
+    manifest = add_package(tmp_path / "src", "arm") / "package.xml"
+    manifest.write_bytes(manifest.read_bytes().replace(b">d<", ">中文<".encode("gbk")))
+    with pytest.raises(WorkspaceError, match="it is not UTF-8; save it as UTF-8; mend"):
+        judge(tmp_path / "src")
 
 
 def test_a_header_of_messages_that_nobody_has_is_told(tmp_path, bare):
@@ -263,14 +302,19 @@ def test_catkin_make_leaves_out_what_cannot_be_built(tmp_path, capsys, monkeypat
     add_package(tmp_path / "src", "arm", "moveit_core", "moveit_core")
     add_package(tmp_path / "src", "wheel", "", "")
     option = "-DCATKIN_BLACKLIST_PACKAGES=arm"
-    assert catkin_make_words(["-C", str(tmp_path)]) == [*hook(), option, "-C", str(tmp_path)]
+    assert catkin_make_words(["-C", str(tmp_path)])[0] == [
+        *hook(), option, "-C", str(tmp_path)]
     assert capsys.readouterr().out.startswith("arm is left out: moveit_core: MoveIt is not")
     monkeypatch.chdir(tmp_path)
-    assert catkin_make_words(["--make-args", "-j2"]) == [*hook(), option, "--make-args", "-j2"]
-    chosen = ["-DCATKIN_WHITELIST_PACKAGES=arm"]
-    assert catkin_make_words(chosen) == [*hook(), *chosen]
+    assert catkin_make_words(["--make-args", "-j2"])[0] == [*hook(), option, "--make-args", "-j2"]
+    chosen = ["-DCATKIN_BLACKLIST_PACKAGES=wheel"]
+    assert catkin_make_words(chosen)[0] == [*hook(), *chosen]
+    for chosen, are_all in (("arm", True), ("arm;wheel", False), ("", False)):
+        words = [f"-DCATKIN_WHITELIST_PACKAGES={chosen}"]
+        given, left = catkin_make_words(words)
+        assert given == [*hook(), option, *words] and left.are_all is are_all
     monkeypatch.chdir(tmp_path / "src")
-    assert "arm" not in catkin_make_words([])[1]  # catkin_make says that this is no workspace
+    assert "arm" not in catkin_make_words([])[0][1]  # catkin_make says that this is no workspace
 
 
 def test_catkin_make_isolated_does_too(tmp_path, monkeypatch, bare):
@@ -280,4 +324,4 @@ def test_catkin_make_isolated_does_too(tmp_path, monkeypatch, bare):
                          ("--ignore-pkg hand", "--ignore-pkg arm hand"),
                          ("--pkg arm", "--pkg arm"),
                          ("--from-pkg=arm", "--from-pkg=arm")):
-        assert catkin_make_isolated_words(typed.split()) == [*hook(), *given.split()]
+        assert catkin_make_isolated_words(typed.split())[0] == [*hook(), *given.split()]

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from workspace_needs.check import modules, packages, sources
-from workspace_needs.check.findings import Finding
+from workspace_needs.check.findings import WORKS, Finding
 
 NODE = "#!/usr/bin/env python3\nimport rospy\nrospy.init_node('n')\n"
 MANIFEST = """<?xml version="1.0"?>
@@ -18,7 +18,7 @@ def add_package(source: Path, name: str, depends: str = "", components: str = ""
                 style: int = 2) -> Path:
     """A package below `source`; `depends` are its keys, `components` those of CMakeLists.txt."""
     folder = source / name
-    (folder / "src").mkdir(parents=True)
+    (folder / "src").mkdir(parents=True, exist_ok=True)
     tags = ("build_depend", "run_depend") if style == 1 else ("depend",)
     declared = "".join(f"<{tag}>{key}</{tag}>" for key in depends.split() for tag in tags)
     (folder / "package.xml").write_text(
@@ -44,7 +44,7 @@ def program_findings(folder: Path) -> list[Finding]:
     """As if check was started anew, which reads each file once."""
     for cached in (modules._names_below, packages._scripts_below, packages._imported):
         cached.cache_clear()
-    return list(sources.program_findings(folder))
+    return [found for found in sources.program_findings(folder) if found.status != WORKS]
 
 
 def script_findings(path: Path) -> list[Finding]:

@@ -18,6 +18,12 @@ CMAKE = re.compile(r"^CMake Error")
 CMAKE_HEAD = re.compile(r"^CMake Error(?: (?:at|in) (\S+?(?::\d+)?))?(?: \(\w+\))?:\s*")
 CMAKE_CALLER = re.compile(r"^  (\S+:\d+) \(\w+\)$")
 LONGEST = 240  # characters of an error in one line
+UNKNOWN_COMMAND = re.compile(r'Unknown CMake command "(\w+)"')
+OF_PACKAGES = {  # commands of packages that learners forget in find_package
+    **dict.fromkeys(("add_message_files", "add_service_files", "add_action_files",
+                     "generate_messages"), "message_generation"),
+    "generate_dynamic_reconfigure_options": "dynamic_reconfigure", "add_rostest": "rostest"}
+GENMSG = "Cannot locate"
 NOT_FOUND = re.compile(r'provided by "([^"]+)"|required component \'([^\']+)\'')
 GENERATOR = re.compile(r"^(catkin_make: |ERROR|Error|.*Error\(s\) in |.*RuntimeError: |"
                        r".*InvalidPackage|Multiple packages found|The workspace contains|"
@@ -88,9 +94,15 @@ def in_one_line(text: str) -> str:
         # Paths of the package are relative; those of catkin and CMake, which it calls, absolute.
         place = next((path for path in [head.group(1) or "/", *callers] if path[0] != "/"), "")
         first = [lines[0][head.end():], *itertools.takewhile(_goes_on, lines[1:])]
-        if first[-1].endswith(":"):  # CMake names what it means in the next paragraph
-            first += itertools.takewhile(_goes_on, lines[len(first) + 1:])
+        if GENMSG in text:  # the first paragraph only asks
+            first = [text[text.index(GENMSG):].partition("\n\n")[0].partition("\nCall")[0]]
+        elif not "".join(first).strip() or first[-1].endswith(":"):
+            # CMake names what it means in the next paragraph
+            after = itertools.dropwhile(lambda line: not line.strip(), lines[len(first):])
+            first += itertools.takewhile(_goes_on, after)
     said = textwrap.shorten(" ".join(first), LONGEST, placeholder=" ...")
+    if (command := UNKNOWN_COMMAND.search(said)) and (package := OF_PACKAGES.get(command[1])):
+        said = f"{said} Add {package} to find_package(catkin REQUIRED COMPONENTS ...)"
     return f"{place}: {said}" if place else said
 
 

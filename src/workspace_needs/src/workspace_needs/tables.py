@@ -149,7 +149,7 @@ def _is_slip(typed: str, name: str) -> bool:
     """Whether `typed` is `name` mistyped, and not another package's name (turtlebot_msgs)."""
     words, others = typed.split("_"), name.split("_")
     if len(words) != len(others) or re.findall(r"\d+", typed) != re.findall(r"\d+", name):
-        return typed.replace("_", "-") == name.replace("_", "-")
+        return re.sub("[_-]", "", typed) == re.sub("[_-]", "", name)
     wrong = [(word, other) for word, other in zip(words, others) if word != other]
     return len(wrong) == 1 and bool(get_close_matches(wrong[0][0], [wrong[0][1]], 1, 0.75))
 

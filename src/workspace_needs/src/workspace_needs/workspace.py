@@ -15,6 +15,7 @@ from catkin_pkg.packages import find_package_paths
 INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[<\"]([^>\"\n]+)[>\"]", re.MULTILINE)
 NODE = re.compile(r"<node\b[^>]*\bpkg=[\"']([\w-]+)[\"']")
 FOUND = re.compile(r"\$\(find\s+([\w-]+)\s*\)")
+CATKIN_PACKAGE = re.compile(r"^\s*catkin_package\s*\(", re.MULTILINE)
 SOURCES = (".c", ".cc", ".cpp", ".cxx", ".h", ".hh", ".hpp")
 OUR_ADDRESS = "courses@example.org"
 MARKER = "CATKIN_IGNORE"
@@ -59,7 +60,8 @@ def source_folder(path: Path) -> Path:
         raise WorkspaceError(f"{path}: there is no such folder; give the workspace's, such as "
                              "~/catkin_ws")
     for folder in (path / "src", path):
-        if folder.is_dir() and (find_package_paths(str(folder)) or _hidden(folder)):
+        if folder.is_dir() and (find_package_paths(str(folder)) or _hidden(folder)
+                                or list(_without_manifest(folder))):
             return folder.resolve()
     if (path / "src").is_dir():
         raise WorkspaceError(f"{path}/src: there is no package in it; clone one into it first")
@@ -100,6 +102,9 @@ def read_workspace(source: Path) -> list[Package]:
         if other != package.folder:
             raise WorkspaceError(f"two packages are called {package.name}: {other} and "
                                  f"{package.folder}; remove or rename one")
+    packages += [Package(path.name, path, unfit={
+        "package.xml": "there is none; catkin_create_pkg makes packages with one"})
+        for path in _without_manifest(source) if path.name not in by_name]
     return sorted(packages, key=lambda package: package.name)
 
 
@@ -115,6 +120,17 @@ def _hidden(source: Path) -> list[str]:
             if (path.parent / "package.xml").is_file() and _text(path) == MARK]
 
 
+def _without_manifest(source: Path) -> Iterator[Path]:
+    """The folders that were to be packages, to go by CMakeLists.txt, but no tool takes for any."""
+    for place, below, names in os.walk(source):
+        if {"package.xml", MARKER} & set(names):
+            below.clear()
+        elif place != str(source) and "CMakeLists.txt" in names and CATKIN_PACKAGE.search(
+                _text(Path(place, "CMakeLists.txt"))):
+            yield Path(place)
+            below.clear()
+
+
 def _read(folder: Path) -> Package:
     try:
         manifest = parse_package(str(folder), warnings=[])
@@ -123,6 +139,8 @@ def _read(folder: Path) -> Package:
         package = Package(manifest.name, folder, unfit=_unfit(manifest, folder))
     except (InvalidPackage, OSError, ValueError) as error:
         said = getattr(error, "msg", None) or str(error)
+        if isinstance(error, UnicodeDecodeError):
+            said = "it is not UTF-8; save it as UTF-8"
         return Package(folder.name, folder, problem=" ".join(str(said).split()))
     package.is_ours = any(person.email == OUR_ADDRESS for person in manifest.maintainers)
     package.asked += [Asked(key, "package.xml") for key in _declared(manifest)]

@@ -12,7 +12,7 @@ from bullet_sim.errors import did_you_mean
 from bullet_sim_ros.unsourced import unsourced
 from workspace_needs.check.contents import Check
 from workspace_needs.check.findings import ACCEPTED, UNCHECKED, Finding, is_serious, table
-from workspace_needs.check.workspaces import workspace_findings
+from workspace_needs.check.workspaces import package_findings, workspace_findings
 from workspace_needs.tables import UNKNOWN, tables, why_absent
 from workspace_needs.workspace import WorkspaceError
 
@@ -54,8 +54,8 @@ def main(argv: list[str] | None = None) -> int:
         return 2
     if not findings:
         what = (_what_is_not_there(args.what) if findings is None else
-                "there is nothing to check: no robot, world or launch file, and no workspace "
-                "with packages of your own")
+                "there is nothing to check: no script, robot, world or launch file, and no "
+                "workspace with packages of your own")
         print(f"check: {args.what}: {what}", file=sys.stderr)
         return 2 if findings is None else 0
     shown = findings if args.all else [f for f in findings if f.status != ACCEPTED]
@@ -95,7 +95,7 @@ def _findings(args: argparse.Namespace) -> list[Finding] | None:
             folder = path.resolve()
             if not (folder / "package.xml").is_file():
                 return workspace_findings(folder, args.arguments, args.run_commands)
+    if file is None and not args.launch:
+        return package_findings(folder, args.arguments, args.run_commands)
     check = Check(args.arguments, args.run_commands)
-    if file is not None:
-        return check.file(file)
-    return check.launch_of_package(folder, args.launch) if args.launch else check.package(folder)
+    return check.launch_of_package(folder, args.launch) if file is None else check.file(file)

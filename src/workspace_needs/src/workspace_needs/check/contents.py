@@ -13,7 +13,7 @@ from bullet_sim.errors import did_you_mean
 from bullet_sim.formats.xacro.bounds import TooLarge, run_bounded
 from bullet_sim_ros.interface import read_interface, rows_by_name
 from bullet_sim_ros.package_paths import open_resources
-from workspace_needs.check.findings import WORKS, Finding, problem
+from workspace_needs.check.findings import HINT, WORKS, Finding, problem
 from workspace_needs.check.launches import NONE_UNBUILT, LaunchChecker, Unbuilt
 from workspace_needs.check.packages import has_interpreter, is_python
 from workspace_needs.check.sources import holds_python, program_findings, script_findings
@@ -71,7 +71,9 @@ class Check:
         python = is_python(path) or holds_python(path)
         if python or has_interpreter(path):
             what = "first line, syntax and modules" if python else "first line"
-            return [*script_findings(path)] or [Finding(str(path), what, WORKS)]
+            found = list(script_findings(path))
+            works = all(each.status == HINT for each in found)
+            return [*found, *([Finding(str(path), what, WORKS)] if works else [])]
         values = dict(word.split(":=", 1) for word in self._arguments if ":=" in word)
         if path.suffix == ".sdf" and "<world" in path.read_text("utf-8", "replace"):
             return self._texts.world_file(path)
@@ -89,9 +91,9 @@ class Check:
                             f"{', '.join(names) or 'none'}")]
         return self.file(found[0])
 
-    def package(self, folder: Path) -> list[Finding]:
+    def package(self, folder: Path, where: str = "") -> list[Finding]:
         """Findings about a package's programs and all of its `files_of`."""
-        return [*program_findings(folder, time.monotonic() + LONGEST),
+        return [*program_findings(folder, time.monotonic() + LONGEST, where),
                 *(finding for path in files_of(folder)
                   for finding in self.file(path, alone=False))]
 

@@ -13,9 +13,10 @@ from bullet_sim_ros.interface import ABSENT, ACCEPTED, APPROXIMATED, WORKS, Entr
 
 PROBLEM = "problem"
 UNCHECKED = "unchecked"
-ORDER = (PROBLEM, ABSENT, UNCHECKED, APPROXIMATED, ACCEPTED, WORKS)
+HINT = "hint"
+ORDER = (PROBLEM, ABSENT, UNCHECKED, APPROXIMATED, HINT, ACCEPTED, WORKS)
 WORDS = {PROBLEM: "PROBLEM", ABSENT: "NOT THERE", UNCHECKED: "not checked",
-         APPROXIMATED: "approximated", ACCEPTED: "ignored", WORKS: "works"}
+         APPROXIMATED: "approximated", HINT: "hint", ACCEPTED: "ignored", WORKS: "works"}
 SERIOUS = (PROBLEM, ABSENT)  # these make the exit code 1
 
 

@@ -19,9 +19,9 @@ import roslaunch.substitution_args
 import roslaunch.xmlloader
 import rospkg
 import yaml
-from roslaunch.substitution_args import SubstitutionException
+from roslaunch.substitution_args import ArgException, SubstitutionException
 
-from bullet_sim.errors import SimulationError
+from bullet_sim.errors import SimulationError, nearest_file
 from bullet_sim.files import check_file
 from bullet_sim.formats.resources import FindPackage
 from bullet_sim.formats.xacro.bounds import limit_memory
@@ -65,12 +65,14 @@ class Launch:
 
     nodes: tuple[LaunchedNode, ...]
     parameters: dict[str, object]  # by full name; NotRun for the output of an unknown command
+    faults: tuple[str, ...] = ()  # of elements, for each of which roslaunch would end
 
 
 def read_launch(path: Path, arguments: list[str], find_package: FindPackage,
                 run_commands: bool = False) -> Launch:
     """Read a launch file as roslaunch does; SimulationError says in one line why it fails.
 
+    An element that roslaunch would end for is one of the `faults`, and the others are read.
     Done in a process of its own: `$(eval …)` may take any time or memory, and commands may hang.
     They are run only with `run_commands`: else xacro and cat are done here, and others are NotRun.
     """
@@ -124,7 +126,7 @@ def _read(path: Path, arguments: list[str], output: Callable[[str], str] | None,
     loader = roslaunch.loader.Loader
     loader.param_value = _remembered(loader.param_value, output, sender)
     roslaunch.substitution_args.eval = _evaluate
-    _watch_includes(roslaunch.xmlloader.XmlLoader)
+    faults = _watch(roslaunch.xmlloader.XmlLoader)
     try:
         config = roslaunch.config.load_config_default(
             [(str(path), arguments)], None, verbose=False, assign_machines=False)
@@ -135,7 +137,8 @@ def _read(path: Path, arguments: list[str], output: Callable[[str], str] | None,
         tuple(LaunchedNode(node.package, node.type, node.namespace, node.args,
                            tuple(node.env_args))
               for node in config.nodes),
-        {name: parameter.value for name, parameter in config.params.items()}))
+        {name: parameter.value for name, parameter in config.params.items()},
+        tuple(dict.fromkeys(faults))))
 
 
 def _evaluate(expression: str, symbols: dict, local: Mapping) -> object:
@@ -155,6 +158,8 @@ def _error_line(error: Exception) -> str:
     if isinstance(error, rospkg.ResourceNotFound):
         return (f"no package {error.args[0]} is found: source the devel/setup.bash of its "
                 "workspace first")
+    if isinstance(error, ArgException):
+        return f"no <arg name=\"{error}\"> stands before $(arg {error}); mend the name"
     if block := YAML_BLOCK.search(str(error)):
         return f"YAML in <rosparam>: {block[1]}; line {block[2]} of it: {block[3]}"
     text = " ".join(str(error).split()) or type(error).__name__
@@ -164,27 +169,49 @@ def _error_line(error: Exception) -> str:
     return text if len(text) <= LONGEST_LINE else f"{text[:LONGEST_LINE]} …"
 
 
-def _watch_includes(loader: type) -> None:
-    """Make roslaunch's reader fail if files include each other without end."""
-    parse_launch, include_tag = loader._parse_launch, loader._include_tag
+class _Endless(SimulationError):
+    """Files include each other without end."""
+
+
+def _watch(loader: type) -> list[str]:
+    """Make roslaunch's reader go on behind a faulty element; the list that its faults will be in.
+
+    It ends where files include each other without end.
+    """
+    parse_launch = loader._parse_launch
     files: list[str] = []
+    faults: list[str] = []
 
     def parse_and_count(self, filename, verbose):
         files.append(filename)
         if files.count(filename) > REPEATED:
             way = f" by way of {files[-2]}" if files[-2] != filename else ""
-            raise SimulationError(f"{filename} includes itself{way} without end; remove "
-                                  "the <include> or give it an if")
+            raise _Endless(f"{filename} includes itself{way} without end; remove "
+                           "the <include> or give it an if")
+        if len(files) > 2 and not Path(filename).exists():
+            raise SimulationError(f"<include>: there is no file {filename}"
+                                  f"{nearest_file(filename)}")
         return parse_launch(self, filename, verbose)
 
-    def include(*arguments, **named):
-        depth = len(files)
-        try:
-            return include_tag(*arguments, **named)
-        finally:
-            del files[depth:]
+    def going_on(read):
+        def element(*arguments, **named):
+            depth = len(files)
+            try:
+                return read(*arguments, **named)
+            except _Endless:
+                raise
+            except ERRORS as error:
+                # The first two are roslaunch's own file and the one that is checked.
+                within = f"while processing {files[depth - 1]}: " if depth > 2 else ""
+                faults.append(within + _error_line(error))
+            finally:
+                del files[depth:]
+        return element
 
-    loader._parse_launch, loader._include_tag = parse_and_count, include
+    loader._parse_launch = parse_and_count
+    for name in ("_include_tag", "_node_tag", "_param_tag", "_rosparam_tag"):
+        setattr(loader, name, going_on(getattr(loader, name)))
+    return faults
 
 
 def _remembered(param_value: Callable, output: Callable[[str], str] | None,

@@ -108,7 +108,8 @@ class LaunchChecker:
             launch = read_launch(path, arguments, self._texts.find_package, self._run_commands)
         except SimulationError as error:
             return [problem(where, "launch file", error)]
-        found = [Finding(where, f"launch file ({len(launch.nodes)} nodes)", WORKS)]
+        found = [problem(where, "launch file", fault) for fault in launch.faults] or [
+            Finding(where, f"launch file ({len(launch.nodes)} nodes)", WORKS)]
         found += [Finding(where, f"parameter {name}", UNCHECKED,
                           f"its command is not run: {value}; --run-commands runs it")
                   for name, value in launch.parameters.items() if isinstance(value, NotRun)]
@@ -228,6 +229,8 @@ class LaunchChecker:
                 return self._texts.model_text(
                     str(value), f"{where}, parameter {candidate}",
                     launch.parameters, namespace)
+        if launch.faults:  # of the element that sets it, perhaps
+            return []
         return [problem(where, f"spawn_model -param {name}",
                         f"no parameter {full}; a <param name=\"{name}\"> has to stand before it")]
 

@@ -77,18 +77,14 @@ def is_slip(typed: str, name: str) -> bool:
     Other names that are as near are other people's modules (cupy and copy, pickle5 and pickle).
     """
     one, other = typed.lower(), name.lower()
-    if one[0] != other[0] or abs(len(one) - len(other)) > 1 or (
-            re.findall(r"\d", one) != re.findall(r"\d", other)):
-        return False
     if one == other:
         return True
-    start = next((at for at, (letter, instead) in enumerate(zip(one, other))
-                  if letter != instead), min(len(one), len(other)))
-    one, other = one[start:], other[start:]
-    if one[1:] == other:  # a letter too many
-        return len(typed) >= 4
-    return len(typed) >= 5 and (one == other[1:] or one[1:] == other[1:]
-                                or (one[:2] == other[1::-1] and one[2:] == other[2:]))
+    same = next(at for at in range(len(one) + 1) if one[at:at + 1] != other[at:at + 1])
+    if not same or re.findall(r"\d", one) != re.findall(r"\d", other):
+        return False
+    one, other = one[same:], other[same:]
+    return (len(typed) >= 4 and one[1:] == other) or (len(typed) >= 5 and (
+        other[1:] in (one, one[1:]) or (one[:2] == other[1::-1] and one[2:] == other[2:])))
 
 
 def _why_no_submodule(name: str) -> str:

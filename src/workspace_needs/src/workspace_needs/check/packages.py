@@ -26,6 +26,12 @@ class Package:
     def __init__(self, folder: Path):
         self.folder = folder
         self.is_one = (folder / "package.xml").is_file()
+        cmake = folder / "CMakeLists.txt"
+        text = re.sub("#.*", "", _text(cmake)) if cmake.is_file() else ""
+        self._relayed, self._installed = (
+            {word.strip('"').rpartition("/")[2]
+             for call in re.findall(INSTALLS.format(command), text, re.IGNORECASE | re.DOTALL)
+             for word in call.split()} for command in ("catkin_install_python", "install"))
 
     def is_relayed(self, path: Path) -> bool:
         """Whether catkin may start a script: CMakeLists.txt hands it to catkin_install_python."""
@@ -50,26 +56,7 @@ class Package:
             name in self._relayed or name in self._installed
             or (os.access(path, os.X_OK) and has_interpreter(path))
             or (self.is_one and in_place and script.is_node)
-        ) and not self._is_imported(path, False)
-
-    def is_needed(self, path: Path) -> bool:
-        """Whether another file imports it, and not only perhaps."""
-        return self._is_imported(path, True)
-
-    @cached_property
-    def _relayed(self) -> frozenset[str]:
-        return self._programs("catkin_install_python")
-
-    @cached_property
-    def _installed(self) -> frozenset[str]:
-        return self._programs("install")
-
-    def _programs(self, command: str) -> frozenset[str]:
-        cmake = self.folder / "CMakeLists.txt"
-        text = re.sub("#.*", "", _text(cmake)) if cmake.is_file() else ""
-        calls = re.findall(INSTALLS.format(command), text, re.IGNORECASE | re.DOTALL)
-        return frozenset(word.strip('"').rpartition("/")[2] for call in calls
-                         for word in call.split())
+        ) and not self.is_imported(path)
 
     @cached_property
     def _launched(self) -> frozenset[str]:
@@ -82,7 +69,8 @@ class Package:
         return frozenset(kind for node in nodes for kind in _values("type", node)
                          if names[:1] == _values("pkg", node))
 
-    def _is_imported(self, path: Path, certainly: bool) -> bool:
+    def is_imported(self, path: Path, certainly: bool = False) -> bool:
+        """Whether another file imports it; `certainly`: and not only perhaps."""
         name = path.parent.name if path.stem == "__init__" else path.stem
         return self.is_one and any(
             name in _imported(other)[certainly]

@@ -1,17 +1,19 @@
-"""What Python will say of a script: its syntax, the modules that it imports, old names in it."""
+"""What Python will say of a script: its syntax, and the modules that it imports."""
 
 import ast
-import collections.abc
 import re
 import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+<<<<<<< HEAD
 import numpy
 from python_amendments.old_names import CV2_NAMES, NUMPY_BUILTINS, NUMPY_NAMES
 
 from bullet_sim_ros.interface import APPROXIMATED
+=======
+>>>>>>> 8180dd93 (Builds repeat what was left out and fail if that was all; check says of a package what it says of its workspace, of a launch file all its faults, of message packages and folders without package.xml what is wrong)
 from workspace_needs.check.findings import ABSENT, UNCHECKED, Finding, problem
 from workspace_needs.check.modules import why_no_import
 
@@ -19,19 +21,8 @@ CODING = re.compile(rb"^[ \t\f]*#.*coding[:=]", re.MULTILINE)  # PEP 263
 LARGEST = 1 << 20  # bytes of a script that is read
 OF_PYTHON_2 = re.compile("Missing parentheses in call|multiple exception types|leading zeros|"
                          "inconsistent use of tabs")
-# Conditions of what may be for another Python, or for nobody here.
-ANY = re.compile("^(?!.*__name__)", re.DOTALL)
-OF_VERSIONS = re.compile("hasattr|version")
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 INIT_NODE = re.compile(rb"\binit_node\s*\(")
-NEW_NAMES = {
-    "numpy": {old: kind.__name__ for old, kind in NUMPY_BUILTINS.items()
-              if old not in vars(numpy)}
-             | {old: f"numpy.{new}" for old, new in NUMPY_NAMES.items()
-                if old not in vars(numpy) and new in vars(numpy)},
-    "cv2": {old: f"cv2.{new}" for old, new in CV2_NAMES.items()},
-    "collections": {name: f"collections.abc.{name}" for name in collections.abc.__all__},
-    "time": {"clock": "time.perf_counter"}}
 
 
 @dataclass(frozen=True)
@@ -87,9 +78,15 @@ def python_findings(script: Script, folder: Path, modules: bool) -> Iterator[Fin
         yield script.fault
         return
     # Where else modules are is known once it runs.
-    if modules and not re.search(rb"sys\.path|addsitedir", script.text):
-        yield from _absent_modules(script.tree, script.path, folder)
-    yield from _old_names(script.tree, script.path)
+    if not modules or re.search(rb"sys\.path|addsitedir", script.text):
+        return
+    places: dict[str, int] = {}  # the first of each
+    nodes = (node for node in at_import(script.tree) if not getattr(node, "level", 0))
+    for module, name, line in imports(nodes):
+        places.setdefault(why_no_import(module, name, script.path, folder), line)
+    places.pop("", None)
+    for why, line in places.items():
+        yield Finding(str(script.path), f"line {line}", ABSENT, why)
 
 
 def _parsed(text: bytes, path: Path) -> ast.Module:
@@ -112,53 +109,17 @@ def imports(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, str, int]]:
 
 
 def at_import(tree: ast.Module) -> Iterator[ast.AST]:
-    """What certainly runs when the file is started or imported."""
-    return _certain(tree, ANY, FUNCTIONS)
+    """What certainly runs when the file is started or imported, in its order.
 
-
-def _absent_modules(tree: ast.Module, path: Path, folder: Path) -> Iterator[Finding]:
-    """A finding for the first place of each that the script cannot do without."""
-    places: dict[str, int] = {}
-    nodes = (node for node in at_import(tree) if not getattr(node, "level", 0))
-    for module, name, line in imports(nodes):
-        places.setdefault(why_no_import(module, name, path, folder), line)
-    places.pop("", None)
-    for why, line in places.items():
-        yield Finding(str(path), f"line {line}", ABSENT, why)
-
-
-def _certain(tree: ast.Module, conditions: re.Pattern, without: tuple[type, ...] = ()
-             ) -> Iterator[ast.AST]:
-    """The parts in their order, without those that may be for another Python, or in `without`.
-
-    The former stand in a try with handlers, in a with that suppresses errors, or behind such a
-    condition.
+    What may be for another Python stands in a try with handlers, in a with that suppresses errors,
+    or behind a condition, other than of __name__.
     """
     waiting: list[ast.AST] = [tree]
     while waiting:
         node = waiting.pop()
         yield node
-        if not (isinstance(node, without) or (isinstance(node, ast.Try) and node.handlers)
+        if not (isinstance(node, FUNCTIONS) or (isinstance(node, ast.Try) and node.handlers)
                 or (isinstance(node, ast.With) and "suppress" in ast.unparse(node.items[0]))
                 or (isinstance(node, ast.If | ast.IfExp)
-                    and conditions.search(ast.unparse(node.test)))):
+                    and "__name__" not in ast.unparse(node.test))):
             waiting += reversed(list(ast.iter_child_nodes(node)))
-
-
-def _old_names(tree: ast.Module, path: Path) -> Iterator[Finding]:
-    """A finding for the first place of each name that a library had and has here again."""
-    nodes = list(_certain(tree, OF_VERSIONS))
-    called = {alias.asname or alias.name: alias.name for node in nodes
-              if isinstance(node, ast.Import) for alias in node.names}
-    places: dict[tuple[str, str], int] = {}
-    for node in nodes:
-        if (isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name)
-                and isinstance(node.ctx, ast.Load)):
-            places.setdefault((called.get(node.value.id, ""), node.attr), node.lineno)
-        elif isinstance(node, ast.ImportFrom) and not node.level:
-            for alias in node.names:
-                places.setdefault((node.module, alias.name), node.lineno)
-    for (module, old), line in places.items():
-        if new := NEW_NAMES.get(module, {}).get(old):
-            yield Finding(str(path), f"line {line}", APPROXIMATED,
-                          f"{module}.{old} is an old name: write {new}")

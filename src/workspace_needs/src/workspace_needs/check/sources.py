@@ -12,7 +12,16 @@ from pathlib import Path
 
 import rospkg
 
-from workspace_needs.check.findings import ABSENT, UNCHECKED, Finding, problem
+from workspace_needs.check.findings import (
+    ABSENT,
+    HINT,
+    PROBLEM,
+    SERIOUS,
+    UNCHECKED,
+    WORKS,
+    Finding,
+    problem,
+)
 from workspace_needs.check.modules import walk
 from workspace_needs.check.packages import (
     BYTE_ORDER_MARK,
@@ -25,8 +34,9 @@ from workspace_needs.check.packages import (
 from workspace_needs.check.python_files import Script, python_findings, read_script
 from workspace_needs.workspace import SOURCES
 
-FILE_NAME = re.compile(r"[\w.-]+")  # without those of templates, such as {{name}}.py
+FILE_NAME = re.compile("[^{}$%]+")  # without those of templates, such as {{name}}.py
 HOLDS_PYTHON = (ast.Import, ast.ImportFrom, ast.FunctionDef)
+FIRST = "line 1"
 PYTHON = "#!/usr/bin/env python3"
 # With bounds, so that the time is linear.
 HINTS = re.compile(rb"\bTransportHints\b[^;\n\"]{0,200}\(\s{0,200}\"(\w+)\"")
@@ -35,12 +45,13 @@ TRANSPORTS = {"compressed": "compressed_image_transport", "theora": "theora_imag
 LARGEST = 1 << 20  # bytes of a source that is searched
 
 
-def program_findings(folder: Path, until: float = math.inf) -> Iterator[Finding]:
+def program_findings(folder: Path, until: float = math.inf, where: str = "") -> Iterator[Finding]:
     """Findings about programs below `folder` that will not start, or end with an exception.
 
-    Also about modules that others import. `until`: a time of time.monotonic().
+    Also about modules that others import; if all are fine, one with their number. `until`: a time
+    of time.monotonic(). `where`: that of the package.
     """
-    package = Package(folder)
+    package, number, fine = Package(folder), 0, True
     paths = (Path(place, name) for place, _, files in walk(folder) for name in files)
     for path in paths:
         if time.monotonic() > until:
@@ -51,9 +62,16 @@ def program_findings(folder: Path, until: float = math.inf) -> Iterator[Finding]
                 package.is_other(path) and not _is_for_rosrun(path, folder)):
             continue
         if path.suffix in SOURCES:
-            yield from transport_findings(path)
+            found = list(transport_findings(path))
         elif path.name != "setup.py" and (has_interpreter(path) or is_python(path)):
-            yield from script_findings(path, package)
+            found = list(script_findings(path, package))
+        else:
+            continue
+        yield from found
+        number += 1
+        fine = fine and not any(each.status in (*SERIOUS, UNCHECKED) for each in found)
+    if number and fine:
+        yield Finding(where or str(folder), f"scripts and C++ files ({number})", WORKS)
 
 
 def _is_for_rosrun(path: Path, folder: Path) -> bool:
@@ -80,11 +98,7 @@ def transport_findings(path: Path) -> Iterator[Finding]:
 
 
 def _is_here(package: str) -> bool:
-    try:
-        rospkg.RosPack().get_path(package)
-    except rospkg.ResourceNotFound:
-        return False
-    return True
+    return package in rospkg.RosPack().list()
 
 
 def script_findings(path: Path, package: Package | None = None) -> Iterator[Finding]:
@@ -107,14 +121,19 @@ def _script_findings(path: Path, package: Package, named: bool) -> Iterator[Find
     starts = named and has_interpreter(path) and os.access(path, os.X_OK)
     program = starts or package.is_program(script)
     if (named or program) and not package.is_relayed(path):
-        yield from _start_findings(path, package.is_one and program, program and python)
+        status = PROBLEM if package.is_one and program else ""
+        if not status and named and not package.is_imported(path) and (
+                has_interpreter(path)
+                or (not package.is_one and python and path.parent.name in FOR_ROSRUN)):
+            status = HINT
+        yield from _start_findings(path, status, program and python)
     if not python:
         return
     if not path.stat().st_size and (named or program) and path.name != "__init__.py":
-        yield problem(str(path), "line 1", "it is empty, so that nothing starts")
+        yield problem(str(path), FIRST, "it is empty, so that nothing starts")
     modules = program or (named and not package.is_other(path))
     found = list(python_findings(script, package.folder, modules))
-    if found and (named or program or package.is_needed(path)):
+    if found and (named or program or package.is_imported(path, certainly=True)):
         yield from found
 
 
@@ -126,18 +145,21 @@ def holds_python(path: Path) -> bool:
     return tree is not None and any(isinstance(node, HOLDS_PYTHON) for node in ast.walk(tree))
 
 
-def _start_findings(path: Path, for_rosrun: bool, for_python: bool) -> Iterator[Finding]:
-    """A finding if the script's first line is wrong, and one if rosrun does not find it."""
+def _start_findings(path: Path, unfound: str, for_python: bool) -> Iterator[Finding]:
+    """A finding if the script's first line is wrong, and one if rosrun does not find it.
+
+    `unfound`: the status of the latter; empty: rosrun is not meant to find it.
+    """
     line, executable = first_line(path), os.access(path, os.X_OK)
-    if for_rosrun and for_python and not executable and not has_interpreter(path):
-        yield problem(str(path), "line 1", f"rosrun does not find it: chmod +x "
+    if unfound and (for_python or unfound == HINT) and not executable and not has_interpreter(path):
+        yield Finding(str(path), FIRST, unfound, f"rosrun does not find it: chmod +x "
                       f"{shlex.quote(str(path))}, and write {PYTHON} as its first line")
         return
     if line and (why := _fault(line.removesuffix(b"\n"), path, for_python)):
-        yield problem(str(path), "line 1", why)
-    if for_rosrun and not executable:
-        yield problem(str(path), "line 1", "it is not executable, so that rosrun and roslaunch do "
-                      f"not find it; type: chmod +x {shlex.quote(str(path))}")
+        yield problem(str(path), FIRST, why)
+    if unfound and not executable:
+        yield Finding(str(path), FIRST, unfound, "it is not executable, so that rosrun and "
+                      f"roslaunch do not find it; type: chmod +x {shlex.quote(str(path))}")
 
 
 def _package_of(path: Path) -> Path:
