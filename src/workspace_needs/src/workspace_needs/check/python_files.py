@@ -7,13 +7,6 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-<<<<<<< HEAD
-import numpy
-from python_amendments.old_names import CV2_NAMES, NUMPY_BUILTINS, NUMPY_NAMES
-
-from bullet_sim_ros.interface import APPROXIMATED
-=======
->>>>>>> 8180dd93 (Builds repeat what was left out and fail if that was all; check says of a package what it says of its workspace, of a launch file all its faults, of message packages and folders without package.xml what is wrong)
 from workspace_needs.check.findings import ABSENT, UNCHECKED, Finding, problem
 from workspace_needs.check.modules import why_no_import
 
