@@ -42,13 +42,13 @@ enter_workspace() {
 }
 
 # Sends this shell, or what it becomes by exec, a SIGHUP when its terminal closes: of `ssh -t HOST make ...`, make alone gets it.
-# Not in the background (make mark ... &), where it is meant to go on.
+# A shell with jobs gives each a process group of its own, and tells them itself, but none that was disowned.
 end_with_terminal() {
   { : < /dev/tty; } 2> /dev/null || return 0
   setpriv --pdeathsig TERM python3 -c 'import os, select, sys
 terminal = select.poll()
 terminal.register(0, 0)  # its end alone: keys are read by others
-if os.tcgetpgrp(0) == os.getpgrp():
+if os.getpgrp() == os.getsid(0):
     terminal.poll()
     os.kill(int(sys.argv[1]), 1)' $$ < /dev/tty > /dev/null 2>&1 &
 }

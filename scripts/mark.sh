@@ -14,8 +14,15 @@ enter_workspace
 end_with_terminal
 owner=$(stat -c %u "$root")
 [ "$(id -u)" != "$owner" ] || exec python3 "$root/src/marking/scripts/mark.py" "$@"
-code=0  # leave no files owned by root in a user's out/
-PYTHONDONTWRITEBYTECODE=1 python3 "$root/src/marking/scripts/mark.py" "$@" || code=$?
-[ ! -d "$root/out" ] || chown -h --reference="$root" "$root/out"
-[ ! -d "$root/out/mark" ] || chown -Rh --reference="$root" "$root/out/mark"
-exit "$code"
+leave_no_files_of_root() {
+  trap '' INT TERM HUP
+  kill "$marking" 2> /dev/null || true
+  wait "$marking" || true
+  [ ! -d "$root/out" ] || chown -h --reference="$root" "$root/out"
+  [ ! -d "$root/out/mark" ] || chown -Rh --reference="$root" "$root/out/mark"
+}
+PYTHONDONTWRITEBYTECODE=1 python3 "$root/src/marking/scripts/mark.py" "$@" &
+marking=$!
+trap leave_no_files_of_root EXIT
+trap 'exit 130' INT TERM HUP
+wait "$marking"
