@@ -82,7 +82,7 @@ deps: ## install the Debian packages that a workspace depends on [WS=~/catkin_ws
 build: ## rebuild the workspace [CPP=1: with the lessons' C++ programs]
 	@scripts/setup.sh --build $(if $(filter-out 0 no false,$(CPP)),--cpp)
 
-report: ## write out/report.txt for a bug report: versions, this machine, the last logs, nothing personal
+report: ## write out/report.txt for a bug report: versions, this machine, which errors the last logs have
 	@scripts/report.sh
 
 clean: ## remove what was installed and built here (out/ stays, except out/test/)

@@ -1,15 +1,23 @@
 #!/usr/bin/env bash
-# Writes out/report.txt, which a bug report wants: our version, this machine, how far setup came, the ends of the last logs.
+# Writes out/report.txt, which a bug report wants: our version, this machine, how far setup came, what went wrong last.
 #
-# Nothing personal: home folder, user, host, addresses and passwords in addresses are replaced.
+# Of a setting it has one of some known values, and of a log the kinds of errors and the places in our packages and in
+# Debian's, as all else may name people, machines or passwords. What `make mark` wrote is not read.
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 state=$root/.setup venv=$root/.venv tests=no
-newest=8 lines=30  # logs, and the lines of each
+lines=20  # of each verb's errors, the last
+ours=$(sed -n '/^OUR_FOLDERS/,/)/p' "$root/scripts/own_packages.py" | grep -o '"[a-z_]*"' | tr -d '"' | paste -sd '|')
 
+# One of these values, or that it is another one.
+known() {
+  local value=$1 each
+  for each in "" "${@:2}"; do [[ $value != $each ]] || { echo "${value:-not set}"; return; }; done
+  echo another
+}
 # What setup would still do, as it finds out itself; each line begins with the subject.
 how_far_setup_came() {
   local told file
-  told=$(check_machine 2>&1) || { say "setup: ${told#*: }"; return; }
+  (check_machine) 2>/dev/null || { say "setup: not for this machine or folder; make setup says why"; return; }
   check_machine
   told=$(missing_packages | xargs)
   say "setup: Debian's packages: ${told:+missing: }${told:-all there}"
@@ -27,10 +35,20 @@ versions() {
     [ ! -d "$found" ] || say "version: $(basename "$found" .dist-info)"
   done
 }
-last_logs() {
-  { find "$state" -maxdepth 1 -name '*.log' -size +0 -printf '%T@ %p\n'
-    find -L "$root/out" "${HOME:-/nonexistent}/.ros/log/latest" "$state/ros/log/latest" -name '*.log' -size +0 -printf '%T@ %p\n'
-  } 2>/dev/null | sort -rn | head -n "$newest" | cut -d ' ' -f 2- || true
+# The errors in the logs of a folder or file, under this heading.
+errors() {
+  local heading=$1 logs=() found
+  mapfile -td '' logs < <(find -L "${@:2}" -name '*.log' -size +0 -printf '%T@ %p\0' 2>/dev/null | sort -zn | cut -zd ' ' -f 2-)
+  [ ${#logs[@]} -gt 0 ] || return 0
+  found=$(ROOT=$root OURS=$ours perl -ne '
+    while (m{(?:\Q$ENV{ROOT}\E/(?=(?:src/(?:$ENV{OURS})|scripts|test|\.venv)/)|(?=/usr/lib/python3))([\w./+-]+)(?:",\ line\ |:)(\d+)
+            |^(?:\w+\.)*(\w+(?:Error|Exception))(?::|$)
+            |(process\ has\ died|exit\ code\ -?\d+|CMake\ Error|[Nn]o\ space\ left|Permission\ denied|Segmentation\ fault
+             |Unable\ to\ locate\ package|unmet\ dependencies|No\ matching\ distribution|DO\ NOT\ MATCH\ THE\ HASHES
+             |Temporary\ failure|Could\ not\ (?:resolve|connect|get\ lock)|Connection\ refused|Network\ is\ unreachable)}gx) {
+      print "  ", defined $1 ? "$1:$2" : $3 // $4, "\n";
+    }' "${logs[@]}" | uniq | tail -n "$lines")
+  say "log: $heading, $(date -r "${logs[-1]}" '+%F %R'):${found:+$'\n'}${found:- no known error}"
 }
 report() (
   export LC_ALL=C LANGUAGE=  # whoever answers may not read the reporter's language
@@ -39,37 +57,18 @@ report() (
   say "system: $(. /etc/os-release; echo "$PRETTY_NAME"), $(dpkg --print-architecture 2>/dev/null || uname -m), $(uname -sr)$([ ! -e /.dockerenv ] || echo ', in Docker')"
   say "processor: $(nproc) cores, $(lscpu | sed -n 's/^Model name: *//p' | head -n 1)"
   awk '/^(MemTotal|MemAvailable|SwapTotal):/ {printf "memory: %s %d MB\n", $1, $2 / 1024}' /proc/meminfo
-  say "disk: $(df -Pm "$root" | awk 'NR == 2 {print $4}') MB free at $root"
-  say "variables: LANG=${LANG:-} TURTLEBOT3_MODEL=${TURTLEBOT3_MODEL:-} ROS_MASTER_URI=${given_master[0]}"
+  say "disk: $(df -Pm "$root" | awk 'NR == 2 {print $4}') MB free"
+  say "setting: LANG $(known "${LANG:-}" POSIX '@([a-z][a-z]_[A-Z][A-Z]|C)?(.[Uu][Tt][Ff]?(-)8)')"
+  say "setting: TURTLEBOT3_MODEL $(known "${TURTLEBOT3_MODEL:-}" burger waffle waffle_pi)"
+  say "setting: ROS_MASTER_URI $(known "${given_master[0]}" 'http://@(localhost|127.0.0.1):+([0-9])?(/)')"
+  say "setting: ROS_HOSTNAME $(known "${given_master[1]}" localhost), ROS_IP $(known "${given_master[2]}" 127.0.0.1)"
   how_far_setup_came
   versions
-  last_logs | while read -r log; do printf '\n== %s\n' "$log"; tail -n "$lines" "$log"; done
+  errors setup "$state" -maxdepth 1
+  for verb in course race lane lane_empty track avoid navigate autorace; do errors "make $verb" "$root/out/$verb"; done
+  for verb in viewer drive; do errors "make $verb" "$root/out/$verb.log"; done
+  errors roslaunch "${HOME:-/nonexistent}/.ros/log/latest" "$state/ros/log/latest"
 )
-# Whole words only: somebody called li has files in /lib.
-impersonal() {
-  local user
-  user=$(id -un 2>/dev/null || id -u)
-  HOMES="${HOME:-}:$(getent passwd "$user" | cut -d : -f 6)" HOSTS="${HOSTNAME:-}:$(uname -n)" \
-    USERS="$user:${USER:-}:${SUDO_USER:-}:$(getent passwd "$user" | cut -d : -f 5 | cut -d , -f 1)" perl -pe '
-    BEGIN {
-      sub words { sort { length $b <=> length $a } grep { length && !/^(root|localhost|\/)$/ } @_ }
-      @homes = words(split /:/, $ENV{HOMES});
-      @hosts = words(map { $_, /^([^.]+)\./ } split /:/, $ENV{HOSTS});
-      @users = words(split /:/, $ENV{USERS});
-    }
-    s/\e\[[\d;?]*[A-Za-z]//g;
-    s{://[^\s/@]+@}{://}g;
-    s/\b(token|password)=[^\s&]+/$1=.../gi;
-    s/[\w.+-]+@[\w-]+(\.[\w-]+)+/address/g;
-    for my $name (@homes) { s/\Q$name\E(?![\w-])/~/g }
-    for my $name (@hosts) { s/(?<![A-Za-z0-9])\Q$name\E(?![A-Za-z0-9])/host/gi }
-    for my $name (@users) { s/(?<![A-Za-z0-9])\Q$name\E(?![A-Za-z0-9])/user/gi }
-    s{/home/[^/\s:"\x27]+}{~user}g;
-    s{[/\\]Users[/\\](?:[^/\\:\n]+(?=[/\\])|[^/\\\s:]+)}{~user}g;
-    s/(?<![\w.=-])(?!127\.|0\.0\.0\.0)\d{1,3}(?:\.\d{1,3}){3}(?![\w.])/address/g;
-    s/\[(?:[0-9a-f]*:){3,}[0-9a-f]*\]/[address]/gi;
-    s/^(.{400}).+/$1 .../'
-}
 mkdir -p "$root/out"
-report 2>&1 | impersonal >"$root/out/report.txt"
+report >"$root/out/report.txt"
 say $"out/report.txt is written. Read it, then attach it to your report."
