@@ -46,7 +46,11 @@ def index(platform: Platform, source: str) -> dict[str, debian_lists.Binary]:
             raise CheckError(f"{platform.release}: {(why or ['apt-get update failed'])[0]}")
         told = subprocess.run(["apt-cache", *options, "dumpavail"], capture_output=True,
                               text=True, check=True)
-    return debian_lists.read_packages(told.stdout.splitlines())
+    found = debian_lists.read_packages(told.stdout.splitlines())
+    if "python3" not in found:
+        raise CheckError(f"{platform.release}: is no whole release, as it has no python3; name "
+                         "one, such as testing")
+    return found
 
 
 def wanted(table: Table, platform: Platform) -> list[Package]:

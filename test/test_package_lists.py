@@ -199,6 +199,15 @@ def test_a_release_that_is_not_there_is_one_line(tmp_path):
     assert done.stderr.startswith("check_releases: wrody: ") and done.stderr.count("\n") == 1
 
 
+def test_a_release_that_only_adds_to_another_is_one_line(tmp_path):
+    mirror(tmp_path, list(TABLE.data["releases"])[-1], {"python3": "3.13.5-1"})
+    mirror(tmp_path, "backports", {"cmake": "3.31.6-1"})
+    done = check_releases(tmp_path, "backports")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == ("check_releases: backports: is no whole release, as it has no python3; "
+                           "name one, such as testing\n")
+
+
 def test_ros_is_taken_in_parts_that_the_next_release_has_too():
     """Debian 14 has no ros-core, which only depends on these."""
     names = {package.name for packages in TABLE.sections("debian").values() for package in packages}

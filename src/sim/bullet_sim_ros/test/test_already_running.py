@@ -62,12 +62,14 @@ def test_who_answers_at_the_address(node, expected):
         assert sign(uri) is expected
 
 
-@pytest.mark.parametrize(("terminal", "its_pid", "ends"), [
-    (None, os.getpid, True), ("/dev/pts/3", os.getpid, False),
+@pytest.mark.parametrize(("has_terminal", "its_pid", "ends"), [
+    (None, os.getpid, True), (os.getpid, os.getpid, False),
+    (os.getppid, os.getpid, False),  # a verb, which starts its programs in sessions of their own
     (None, os.getppid, False)])  # it has no such port: a number of another machine
-def test_what_ends_a_node_without_a_terminal(monkeypatch, terminal, its_pid, ends):
-    pid = its_pid()
-    monkeypatch.setattr(psutil.Process, "terminal", lambda _: terminal)
+def test_what_ends_a_node_without_a_terminal(monkeypatch, has_terminal, its_pid, ends):
+    pid, with_terminal = its_pid(), has_terminal() if has_terminal else None
+    monkeypatch.setattr(psutil.Process, "terminal",
+                        lambda self: "/dev/pts/3" if self.pid == with_terminal else None)
     with (serving(xmlrpc_server(getPid=lambda _: [1, "", pid])) as node,
           serving(xmlrpc_server(lookupNode=lambda _caller, _node: [1, "", node])) as master):
         assert to_kill(master, NAME) == (pid if ends else None)

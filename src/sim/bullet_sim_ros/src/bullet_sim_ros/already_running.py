@@ -85,7 +85,8 @@ def sign_of_life(master_uri: str, name: str) -> Sign:
 
 def to_kill(master_uri: str, name: str) -> int | None:
     """What ends a node that runs on this machine without a terminal, where no Ctrl-C can: the
-    process, or the roslaunch that started it; None for any other node.
+    process, or the roslaunch that started it; None for any other node. A program in a terminal,
+    such as make, may have started that roslaunch in a session of its own.
     """
     _, _, uri = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport(ANSWER_TIME)).lookupNode(
         name, name)
@@ -98,7 +99,8 @@ def to_kill(master_uri: str, name: str) -> int | None:
         parent = process.parent()
         if parent and any(Path(word).name == "roslaunch" for word in parent.cmdline()[:2]):
             process = parent
-        return None if process.terminal() else process.pid
+        above = (process, *process.parents())
+        return None if any(each.terminal() for each in above) else process.pid
     return None
 
 
