@@ -71,10 +71,10 @@ choose_master() {
     # Another machine cannot reach this one as localhost: let rospy use this machine's own name.
     elif [[ ! $ROS_MASTER_URI =~ ^http://(localhost|127\.) ]]; then unset ROS_HOSTNAME; fi
   else
-    ROS_MASTER_URI=$(python3 -m run_session.master) || return 1  # callers' || turns set -e off
+    ROS_MASTER_URI=$(trap '' INT; python3 -m run_session.master) || return 1  # callers' || turns set -e off
     export ROS_MASTER_URI
     [ "$ROS_MASTER_URI" = "$usual" ] ||
       say $"Another ROS master is running on this machine. In each further terminal type: export ROS_MASTER_URI=$ROS_MASTER_URI"
   fi
-  python3 -m bullet_sim_ros.only_simulator
+  (trap '' INT; python3 -m bullet_sim_ros.only_simulator)
 }

@@ -2,7 +2,8 @@
 # The racecar, driven by keyboard: in a window if there is a screen, else in this terminal.
 failure_code=2
 trap 'exit 0' INT  # Ctrl-C is how it is meant to end: make has nothing to report
-. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+here=$(dirname "${BASH_SOURCE[0]}")  # a command of its own, after which Ctrl-C counts
+. "$here/common.sh"
 "$root/scripts/setup.sh" || exit 2
 enter_workspace
 end_with_terminal

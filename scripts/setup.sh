@@ -18,6 +18,8 @@ debian_mb=2000  # measured: 1550 installed, 405 in apt's cache
 python_mb=1150  # measured: 830 installed, 250 in pip's cache and while it unpacks
 build_mb=40     # measured: 8 with the packages of the first release
 
+# Also where what runs has taken Ctrl-C for a fault of its own: a sum of half of the files would begin a new build.
+trap 'trap - INT; kill -INT $$' INT
 state=$root/.setup venv=$root/.venv
 tests=no workers=no learning=no cpp=OFF force_build=no build=yes bashrc=no
 for option in "$@"; do

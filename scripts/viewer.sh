@@ -4,7 +4,8 @@
 #   scripts/viewer.sh [control:=true] [rviz:=FILE] [port:=8080] [address:=0.0.0.0] ...   as in viewer.launch
 failure_code=2
 trap 'exit 0' INT  # Ctrl-C is how it is meant to end: make has nothing to report
-. "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+here=$(dirname "${BASH_SOURCE[0]}")  # a command of its own, after which Ctrl-C counts
+. "$here/common.sh"
 for word in "$@"; do
   if [[ $word == port:=* ]] && ! [[ ${word#port:=} =~ ^[1-9][0-9]{0,4}$ && ${word#port:=} -le 65535 ]]; then
     fail $"port is ${word#port:=}; give one from 1 to 65535, such as PORT=8080"

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import subprocess
 from pathlib import Path
 
@@ -212,3 +213,34 @@ def test_each_script_of_run_starts_its_program_after_setup(tmp_path: Path, scrip
     program, options = started.split(" ", 1)
     assert setup.startswith("setup") and options == "--seed 1"
     assert (ROOT / Path(program).relative_to(tmp_path)).is_file()
+
+
+def interrupted(script: Path, **environment: str) -> subprocess.CompletedProcess:
+    """A script in whose process group a program of its own plays Ctrl-C."""
+    return subprocess.run([script], text=True, capture_output=True, timeout=60, check=False,
+                          start_new_session=True, env=os.environ | environment)
+
+
+def write_program(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
+
+
+@pytest.mark.parametrize("verb", ["drive", "viewer"])
+def test_ctrl_c_at_the_first_program_is_the_end_without_a_word(tmp_path: Path, verb: str) -> None:
+    write_program(tmp_path / "dirname", "kill -INT 0")
+    done = interrupted(ROOT / f"scripts/{verb}.sh", PATH=f"{tmp_path}:{os.environ['PATH']}")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_ctrl_c_ends_setup_also_where_a_program_takes_it_for_a_fault(tmp_path: Path) -> None:
+    shutil.copytree(ROOT / "scripts", tmp_path / "scripts")
+    shutil.copytree(ROOT / "dependencies", tmp_path / "dependencies",
+                    ignore=shutil.ignore_patterns("requirements*"))  # nothing to install
+    write_program(tmp_path / ".venv/bin/pip", "")
+    write_program(tmp_path / ".venv/bin/python3", "trap '' INT; kill -INT 0; exit 1")
+    (tmp_path / ".venv/pyvenv.cfg").write_text(
+        "home = /usr/bin\ninclude-system-site-packages = true\n")
+    done = interrupted(tmp_path / "scripts/setup.sh")
+    assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")
