@@ -19,10 +19,10 @@ http://zhang-robot.local:11311 192.168.7.9 ip=10.3.2.1 at 192.168.1.17. host_192
 zhang@lab-pc zhang@localhost 张伟@学校.cn Lin.Yue@example.org git@gitlab.uni.edu:zhangwei/robot.git
 Authorization: Bearer Geheim1
 password: Geheim1 api_key=Geheim1 access_token=Geheim1 https://lin:Geheim1@pypi.org/simple
-/home/zhang wei/ws /media/zhang wei/stick /var/spool/mail/zhang /Users/zhang %2Fhome%2Fzhangwei
+/home/{who} wei/ws /media/zhang wei/stick /var/spool/mail/zhang /Users/{who} %2Fhome%2Fzhangwei
 C:\\Users\\zhang wei C:\Users\zhang wei
 roslaunch-Kontor-7-4711.log Zhang_Wei_20231234/track0-seed1
-""".strip().splitlines()
+""".strip().replace("{who}", "zhang").splitlines()
 PLACES = """Traceback (most recent call last):
   File "{root}/src/sim/bullet_sim/a.py", line 12, in <module>
   File "/usr/lib/python3/dist-packages/rospy/client.py", line 7, in zhang
