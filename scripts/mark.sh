@@ -16,13 +16,12 @@ owner=$(stat -c %u "$root")
 [ "$(id -u)" != "$owner" ] || exec python3 "$root/src/marking/scripts/mark.py" "$@"
 leave_no_files_of_root() {
   trap '' INT TERM HUP
-  kill "$marking" 2> /dev/null || true
-  wait "$marking" || true
+  kill $(jobs -p) 2> /dev/null || true
+  wait
   [ ! -d "$root/out" ] || chown -h --reference="$root" "$root/out"
   [ ! -d "$root/out/mark" ] || chown -Rh --reference="$root" "$root/out/mark"
 }
-PYTHONDONTWRITEBYTECODE=1 python3 "$root/src/marking/scripts/mark.py" "$@" &
-marking=$!
 trap leave_no_files_of_root EXIT
 trap 'exit 130' INT TERM HUP
-wait "$marking"
+PYTHONDONTWRITEBYTECODE=1 python3 "$root/src/marking/scripts/mark.py" "$@" &
+wait $!
