@@ -51,6 +51,9 @@ OF_ARGPARSE = (
 OF_SYSTEM = (
     "No such file or directory", "Permission denied", "Is a directory", "Not a directory",
     "File exists", "No space left on device", "Connection refused")
+# Of Tk.
+OF_TK = ("no display name and no $DISPLAY environment variable",
+         "couldn't connect to display {0}")
 # Of expat, before a line and column.
 OF_EXPAT = ("not well-formed (invalid token)", "mismatched tag", "no element found",
             "unclosed token", "duplicate attribute", "junk after document element")
@@ -234,6 +237,7 @@ def python_texts() -> dict[str, list[str]]:
     """Each text that a program prints, and the files that it is in."""
     found: dict[str, list[str]] = {text: ["Python's argparse"] for text in OF_ARGPARSE}
     found |= {text: ["the system"] for text in OF_SYSTEM}
+    found |= {text: ["Tk"] for text in OF_TK}
     found |= {text: ["expat"] for text in OF_EXPAT}
     found |= {text: ["Python"] for text in OF_PYTHON}
     found |= {text: ["PyYAML"] for text in OF_YAML}

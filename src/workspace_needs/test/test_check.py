@@ -167,10 +167,12 @@ def test_a_package_is_looked_through(capsys):
     ("strange_arm", "clone its source into src/, or mend the name; once it is cloned, type: "
                     "rosrun bullet_sim_ros check ~/catkin_ws/src/strange_arm"),
     ("my_robot_vision", "scripts of that package are in ai_robot_tracking here"),
+    ("mav_msgs", "neither Debian nor this repository has it; clone its source into src/, or mend"),
     ("moveit_commander", "MoveIt is not in Debian"), ("nothere.py", "or give a path")])
 def test_what_to_type_for_a_name_that_nobody_has(capsys, name, words):
     assert main([name]) == 2
-    assert words in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert words in said and "did you mean" not in said
 
 
 def test_nothing_to_check_and_a_wrong_launch_file(capsys):

@@ -93,6 +93,17 @@ def test_it_is_said_in_the_language_of_the_locale(monkeypatch, capsys):
     assert capsys.readouterr().err.endswith("numpy.spam 是旧名字：请写 numpy.eggs\n")
 
 
+@pytest.mark.parametrize(("words", "typed"), [(["-c"], "<string>:1"), (["-"], "<stdin>:1")])
+def test_it_is_said_so_without_a_file_too(words, typed):
+    code = "import collections; collections.Iterable"
+    done = subprocess.run(
+        [sys.executable, *words, *([code] if "-c" in words else [])], input=code, text=True,
+        capture_output=True, timeout=100, check=True,
+        env={"PYTHONPATH": f"{SOURCE}:{LANGUAGE}", "LANG": "C.UTF-8", "LANGUAGE": "zh_CN"})
+    assert done.stderr == (
+        f"{typed}：collections.Iterable 是旧名字：请写 collections.abc.Iterable\n")
+
+
 @pytest.mark.parametrize("code", [
     IMAGE + f"contours, hierarchy = {CONTOURS}; print(len(contours))",
     IMAGE + f"contours = {CONTOURS}[-2]; print(len(contours))",

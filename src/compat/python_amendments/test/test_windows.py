@@ -287,13 +287,31 @@ def test_a_persons_own_usercustomize_still_runs(tmp_path):
     assert done.stdout.strip() == "still here", done.stderr
 
 
-@pytest.mark.parametrize("display", ["", ":7654"])
-def test_a_keyboard_script_without_a_screen_ends_with_what_drives(display):
-    done = run_python("from tkinter import *\nimport tkinter as tk\ntk.Tk()", {"DISPLAY": display})
-    last = done.stderr.splitlines()[-1]
-    assert last.startswith("_tkinter.TclError: ") and "display" in last
-    assert last.endswith("type make drive, or use the page's tab Drive: "
-                         "roslaunch sim_viewer viewer.launch control:=true")
+ENGLISH, CHINESE = ({"LC_ALL": "", "LANG": "C.UTF-8", "LANGUAGE": each} for each in ("en", "zh_CN"))
+
+
+@pytest.mark.parametrize(("display", "language", "why", "drives"), [
+    (None, ENGLISH, "no display name and no $DISPLAY environment variable; keys", "type make drive"),
+    (":7654", ENGLISH, """couldn't connect to display ":7654"; keys""", "type make drive"),
+    (None, CHINESE, "没有显示器名，环境变量 $DISPLAY 也没有设置; 没有屏幕", "输入 make drive"),
+    (":7654", CHINESE, '连接不上显示器 ":7654"; 没有屏幕', "输入 make drive")])
+def test_a_keyboard_script_without_a_screen_ends_with_what_drives(
+        tmp_path, monkeypatch, display, language, why, drives):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    script = tmp_path / "keys.py"
+    script.write_text("from tkinter import *\nimport tkinter as tk\ntk.Tk()")
+    done = run_python(f"import runpy, sys; sys.argv = ['{script}']; runpy.run_path('{script}')",
+                      language | ({"DISPLAY": display} if display else {}))
+    (line,) = done.stderr.splitlines()
+    assert line.startswith(f"keys.py: {why}") and drives in line
+    assert line.endswith("roslaunch sim_viewer viewer.launch control:=true")
+    assert done.returncode == 1
+
+
+def test_the_error_of_a_window_can_be_caught():
+    done = run_python("import tkinter\ntry: tkinter.Tk()\nexcept tkinter.TclError: print('no')",
+                      {"DISPLAY": ""})
+    assert (done.stdout, done.stderr) == ("no\n", "")
 
 
 def test_windows_with_words_of_their_own_keep_them():

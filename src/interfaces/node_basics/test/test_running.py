@@ -17,7 +17,7 @@ def test_what_was_killed_does_not_count(monkeypatch, service, who, expected):
         ports = {f"/{name}/{service}": each.getsockname()[1]
                  for name, each in (("a", alive), ("b", dead))}
         master = SimpleNamespace(
-            getSystemState=lambda: ([], [], [[name, ["n"]] for name in ports]),
-            lookupService=lambda name: f"rosrpc://localhost:{ports[name]}")
+            getSystemState=lambda: ([], [], [[name, [f"node of {name}"]] for name in ports]),
+            lookupNode=lambda node: f"http://localhost:{ports[node.removeprefix('node of ')]}/")
         monkeypatch.setattr(running.rosgraph, "Master", lambda _: master)
         assert who() == [expected]

@@ -16,7 +16,7 @@ import pytest
 import yaml
 
 from bullet_sim.errors import FormatError, SimulationError
-from bullet_sim.formats.loading import load_light, load_model, load_world
+from bullet_sim.formats.loading import load_entity, load_model, load_world
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.xml_values import numbers
 
@@ -93,7 +93,7 @@ def test_a_friction_below_zero_is_without_limit(text):
     assert surface.mu2 == 1.0
 
 
-@pytest.mark.parametrize("load", [load_model, load_light])
+@pytest.mark.parametrize("load", [load_model, load_entity])
 @pytest.mark.parametrize("text, reason", [
     ("hello", "the text is not well-formed XML: syntax error at line 1, column 1"),
     ("", "the text is empty: there is no XML in it"),

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from bullet_sim.description import Box, Inertial, Plane, Surface
-from bullet_sim.errors import ResourceNotFound
-from bullet_sim.formats.loading import load_light, load_model
+from bullet_sim.errors import ResourceNotFound, SimulationError
+from bullet_sim.formats.loading import load_entity, load_model
 from bullet_sim.formats.resources import Resources
 from bullet_sim.formats.source import NEWEST_SDF, sdf_version
 
@@ -145,15 +145,16 @@ def test_unknown_geometry_is_one_warning(caplog):
 def test_gazebo_root_and_light_root():
     assert load_model('<gazebo version="1.2"><model name="m"><link name="l"/></model></gazebo>',
                       NO_FILES).name == "m"
-    light = load_light("""<sdf version="1.6"><light name="lamp" type="spot">
+    light = load_entity("""<sdf version="1.6"><light name="lamp" type="spot">
         <diffuse>1 0 0 1</diffuse></light></sdf>""", NO_FILES)
     assert (light.name, light.type, light.range) == ("lamp", "spot", 10)
     assert light.diffuse == (1, 0, 0, 1)
-    assert load_light(sdf('<link name="l"/>'), NO_FILES) is None
+    assert load_entity(sdf('<link name="l"/>'), NO_FILES).links[0].name == "l"
     lamp = '<light name="lamp" type="spot"/>'
     for other in ('<sdf version="1.6"/>', f"<robot>{lamp}</robot>",
                   f'<sdf version="1.6"><include><uri>model://x</uri></include>{lamp}</sdf>'):
-        assert load_light(other, NO_FILES) is None
+        with pytest.raises(SimulationError):
+            load_entity(other, NO_FILES)
 
 
 def test_database_text_brings_in_the_included_model():

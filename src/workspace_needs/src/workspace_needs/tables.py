@@ -123,7 +123,7 @@ class Tables:
 
     def _nobody(self, key: str) -> str:
         similar = [name for name in get_close_matches(key, [*self.ours, *self.debian], 3, 0.85)
-                   if name != key and _is_slip(key, name)]
+                   if name != key and is_slip(key, name)]
         if similar:
             return f"nobody has that name; is {similar[0]} meant?"
         return ("neither Debian nor this repository has it; clone its source into src/, or mend "
@@ -145,7 +145,7 @@ def why_absent(name: str, *debian_names: str) -> str:
     return tables().answer(name).why or "source devel/setup.bash of its workspace first"
 
 
-def _is_slip(typed: str, name: str) -> bool:
+def is_slip(typed: str, name: str) -> bool:
     """Whether `typed` is `name` mistyped, and not another package's name (turtlebot_msgs)."""
     words, others = typed.split("_"), name.split("_")
     if len(words) != len(others) or re.findall(r"\d+", typed) != re.findall(r"\d+", name):

@@ -23,7 +23,7 @@ from node_basics.running import simulators
 from std_srvs.srv import Empty
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.formats.loading import load_light, load_model, load_world
+from bullet_sim.formats.loading import load_entity, load_world
 from bullet_sim.formats.sdf.include import model_file
 from bullet_sim.formats.sdf.writing import VERSION, sdf_text
 from bullet_sim.formats.xml_text import decoded, parse_xml, read_xml_file
@@ -118,8 +118,8 @@ def run_sdf(options: argparse.Namespace) -> None:
     logging.getLogger("bullet_sim").addHandler(mistakes)
     if root.tag != "robot" and root.find("world") is not None:
         load_world(name, resources)
-    elif load_light(text := ElementTree.tostring(root, encoding="unicode"), resources) is None:
-        model = load_model(text, resources)
+    else:
+        model = load_entity(ElementTree.tostring(root, encoding="unicode"), resources)
     if options.print:
         print(sdf_text(model) if root.tag == "robot"
               else ElementTree.tostring(root, encoding="unicode"))

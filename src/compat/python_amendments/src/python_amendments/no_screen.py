@@ -2,6 +2,9 @@
 
 import os
 import re
+import sys
+
+from terminal_language import translated
 
 FUNCTIONS = (
     "namedWindow imshow waitKey waitKeyEx pollKey startWindowThread destroyWindow "
@@ -33,11 +36,14 @@ def amend_cv2(cv2):
 
 
 def amend_tkinter(tkinter):
-    """Let the error of a window that has no screen end with what drives without one.
+    """Let a script that ends as its window has no screen say in one line what drives without one.
 
     Tutorials' keyboard scripts open `Tk()`; programs of ours give it a name and have own words.
     """
-    opens = tkinter.Tk.__init__
+    opens, shown = tkinter.Tk.__init__, sys.excepthook
+
+    class NoScreen(tkinter.TclError):
+        """A script may catch it as Tk's."""
 
     def __init__(self, *words, **options):
         try:
@@ -45,6 +51,11 @@ def amend_tkinter(tkinter):
         except tkinter.TclError as error:
             if words or options or "display" not in str(error):
                 raise
-            raise tkinter.TclError(f"{error}; {WITHOUT_TK}") from None
+            raise NoScreen(f"{error}; {WITHOUT_TK}") from None
 
-    tkinter.Tk.__init__ = __init__
+    def show(kind, error, trace):
+        if kind is not NoScreen:
+            return shown(kind, error, trace)
+        print(translated(f"{os.path.basename(sys.argv[0])}: {error}"), file=sys.stderr)
+
+    tkinter.Tk.__init__, sys.excepthook = __init__, show

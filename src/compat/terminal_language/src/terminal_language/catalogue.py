@@ -20,6 +20,7 @@ JOINTS = re.compile(r"(: |; )")
 IN_BRACKETS = re.compile(r"(.+)( \((?:[^()]|\([^()]*\))*\))", re.DOTALL)
 MOST_PARTS = 8  # of a text between colons and semicolons; more are a list, an item at a time
 WORD = re.compile(r"[A-Za-z]{2,}")
+XML = re.compile(r"\s*<(?!\w+>:\d)")  # not <stdin>:1, a place
 # Where a value begins or ends: no space between Chinese characters, one between a Chinese
 # character and a Latin letter or digit.
 SPACED = re.compile(r"(?<=[\u4e00-\u9fff])(?: \0|\0 )(?=[\u4e00-\u9fff])")
@@ -97,7 +98,7 @@ class Catalogue:
         return "".join(map(self._line, text.splitlines(keepends=True)))
 
     def _line(self, line: str) -> str:
-        if len(line) > LONGEST or line.lstrip().startswith("<"):
+        if len(line) > LONGEST or XML.match(line):
             return line
         found = self._around(line)
         return line if found is None else found

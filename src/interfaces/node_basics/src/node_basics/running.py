@@ -18,12 +18,13 @@ def offering(ending: str) -> list[str]:
     """
     master = rosgraph.Master(rospy.get_name())
     _, _, offered = master.getSystemState()
-    return sorted(name.removesuffix(ending) for name, _ in offered
-                  if name.endswith(ending) and _listens(master, name))
+    return sorted(name.removesuffix(ending) for name, (node, *_) in offered
+                  if name.endswith(ending) and _listens(master, node))
 
 
-def _listens(master: rosgraph.Master, service: str) -> bool:
+def _listens(master: rosgraph.Master, node: str) -> bool:
+    """At its XML-RPC port: of a service's, a node warns when nobody asks for anything there."""
     try:
-        return listens(master.lookupService(service))
+        return listens(master.lookupNode(node))
     except (OSError, rosgraph.MasterException):
         return False

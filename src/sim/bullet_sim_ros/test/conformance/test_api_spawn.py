@@ -50,6 +50,15 @@ def test_a_model_gets_its_name_and_pose(bench, kind, xml):
     assert spawn(bench, xml, kind) == TAKEN
 
 
+@pytest.mark.parametrize("kind, xml", [
+    ("sdf", "<sdf version=1.6><model name='m'><link name='l'/></model></sdf> tail"),
+    ("sdf", "<sdf version=1.6><light name='m' type='point'/></sdf> tail"),
+    ("urdf", URDF.format("") + " tail")])
+def test_what_is_not_xml_by_the_rules_is_said_once(bench, caplog, kind, xml):
+    assert spawn(bench, xml, kind) == DONE
+    assert caplog.text.count("taken all the same, as by Gazebo") == 1
+
+
 def test_a_model_is_spawned_while_time_stands_still(bench):
     # conforms: /gazebo/spawn_sdf_model, /gazebo/pause_physics
     bench.call("/gazebo/pause_physics")

@@ -13,7 +13,7 @@ from bullet_sim_ros.unsourced import unsourced
 from workspace_needs.check.contents import Check
 from workspace_needs.check.findings import ACCEPTED, UNCHECKED, Finding, is_serious, table
 from workspace_needs.check.workspaces import package_findings, workspace_findings
-from workspace_needs.tables import UNKNOWN, tables, why_absent
+from workspace_needs.tables import UNKNOWN, is_slip, tables, why_absent
 from workspace_needs.workspace import WorkspaceError
 
 PACKAGE = re.compile(r"[A-Za-z][\w-]*")
@@ -71,7 +71,8 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _what_is_not_there(name: str) -> str:
-    near = unsourced(name) or did_you_mean(name, rospkg.RosPack().list(), 0.75)
+    near = unsourced(name) or ("" if tables().known(name) else did_you_mean(
+        name, (each for each in rospkg.RosPack().list() if is_slip(name, each)), 0.75))
     if near or not PACKAGE.fullmatch(name):
         return f"no such file or package{near}; try `rospack list`, or give a path"
     why = why_absent(name)

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
+from bullet_sim.description import ModelDescription
 from bullet_sim.errors import FormatError, SimulationError
-from bullet_sim.formats.loading import load_light, load_model, load_world
+from bullet_sim.formats.loading import load_entity, load_world
 from bullet_sim.formats.resources import DATA_FOLDER, Resources
 from bullet_sim.formats.sdf.include import model_file
 from bullet_sim.formats.xml_text import decoded, read_bytes
@@ -65,14 +66,12 @@ class TextChecker:
             parameters = {"/robot_description": text}
         with listening() as captured:
             try:
-                # A quick search first, as parsing a large robot takes time.
-                light = "<light" in text and load_light(text, self._resources) is not None
-                if not light:
-                    description = load_model(text, self._resources, None)
+                description = load_entity(text, self._resources)
+                if isinstance(description, ModelDescription):
                     try_model(description, parameters, namespace)
             except SimulationError as error:
                 return [problem(where, "robot", error)]
-        if light:
+        if not isinstance(description, ModelDescription):
             return [Finding(where, "light", WORKS), *self._details(text, where, None)]
         links = f"{len(description.links)} links, {len(description.joints)} joints"
         return [Finding(where, f"model {description.name} ({links})", WORKS),

@@ -39,31 +39,18 @@ def load_model(text: str, resources: Resources, name: str | None = None) -> Mode
 
     FormatError for a text that is neither, and for errors in it that cannot be skipped.
     """
-    root = _parse_model(text)
-    _check_size(root, "the text")
-    named = root
-    if root.tag == "robot":
-        _refuse_unprocessed(root)
-        _put_in_package_folders(root, resources)
-    elif root.tag in SDF_ROOTS:
-        named = _model_of(root)
-    else:
-        raise FormatError(f"{NOT_A_MODEL} (the root element is <{root.tag}>)")
-    if name and named is not None:
-        named.set("name", name)
-    with reading():
-        model = _read_root(root, Source(resources, _read_root))
-    return replace(model, name=name) if name else model
+    return _model_in(_parse_model(text), resources, name)
 
 
-def load_light(text: str, resources: Resources, name: str | None = None) -> LightDescription | None:
-    """The light in an SDF text whose root's first child is one; None for other texts.
+def load_entity(text: str, resources: Resources, name: str | None = None
+                ) -> ModelDescription | LightDescription:
+    """The light in an SDF text whose root's first child is one; of other texts the model.
 
-    FormatError for a text that is not XML.
+    FormatError as `load_model`.
     """
     root = _parse_model(text)
     if root.tag not in SDF_ROOTS or len(root) == 0 or root[0].tag != "light":
-        return None
+        return _model_in(root, resources, name)
     with reading():
         light = read_light(root[0])
     return replace(light, name=name) if name else light
@@ -95,6 +82,23 @@ def _parse_model(text: str) -> Element:
         return parse_xml(text, "the text")
     except FormatError as error:
         raise FormatError(f"{NOT_A_MODEL} ({error})") from None
+
+
+def _model_in(root: Element, resources: Resources, name: str | None) -> ModelDescription:
+    _check_size(root, "the text")
+    named = root
+    if root.tag == "robot":
+        _refuse_unprocessed(root)
+        _put_in_package_folders(root, resources)
+    elif root.tag in SDF_ROOTS:
+        named = _model_of(root)
+    else:
+        raise FormatError(f"{NOT_A_MODEL} (the root element is <{root.tag}>)")
+    if name and named is not None:
+        named.set("name", name)
+    with reading():
+        model = _read_root(root, Source(resources, _read_root))
+    return replace(model, name=name) if name else model
 
 
 def _refuse_unprocessed(root: Element) -> None:

@@ -7,9 +7,9 @@ from xml.etree.ElementTree import SubElement
 
 from gazebo_msgs.srv import DeleteModel, SpawnModel
 
-from bullet_sim.description import ModelDescription, PluginDescription
+from bullet_sim.description import LightDescription, ModelDescription, PluginDescription
 from bullet_sim.errors import FormatError
-from bullet_sim.formats.loading import load_light, load_model
+from bullet_sim.formats.loading import load_entity
 from bullet_sim.pose import IDENTITY
 from bullet_sim_ros import names
 from bullet_sim_ros.services.answers import CallFails, ServiceError, done, service
@@ -31,14 +31,13 @@ def spawn(simulation: Simulation, request, response) -> None:
     """
     world, name = simulation.world, request.model_name or None
     pose = spawn_pose(world, request)
-    light = load_light(request.model_xml, simulation.resources, name)
-    if light is not None:
-        if light.name in world.scene.lights:
+    description = load_entity(request.model_xml, simulation.resources, name)
+    if isinstance(description, LightDescription):
+        if description.name in world.scene.lights:
             raise ServiceError(TAKEN)
-        world.scene.add_light(light)
+        world.scene.add_light(description)
         done(response, SPAWNED)
         return
-    description = load_model(request.model_xml, simulation.resources, name)
     if description.name in world.models:
         raise ServiceError(TAKEN)
     if is_turnless(request.initial_pose):
