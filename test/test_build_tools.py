@@ -103,6 +103,7 @@ def test_a_missing_header_is_found_through_another_packages_header(built):
 @pytest.mark.parametrize("line, built", [
     *((line, "") for line in TOOLS.values()),
     ("catkin_make --only-pkg-with-deps arm", "wheel"),
+    ("catkin_make --only-pkg-with-deps=arm", "wheel"),
     ("catkin_make -DCATKIN_WHITELIST_PACKAGES=arm", "wheel"),
     ("catkin_make --pkg arm", "wheel")])  # which ends with make's own error
 def test_a_build_that_leaves_out_all_that_was_asked_for_has_failed(tmp_path, line, built):

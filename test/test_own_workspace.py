@@ -201,6 +201,7 @@ def test_deps_reads_the_workspace_that_it_is_given():
     done = deps(str(ROOT / "test/workspaces/shapes"))
     assert done.returncode == 0 and done.stdout.startswith("17 packages"), done.stdout + done.stderr
     assert "shape_gazebo: include/shape_gazebo/plugin.h is left out" in done.stdout
+    assert done.stderr == ""
 
 
 def test_the_table_of_packages_is_what_its_files_say():

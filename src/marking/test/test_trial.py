@@ -120,6 +120,12 @@ def test_a_program_without_code_is_not_driven(marking, tmp_path, capsys, program
     assert says in (options.out / "students" / "good" / "index.html").read_text()
 
 
+@pytest.mark.parametrize("program", ["# mine\rx = 1\r", "\ufeffx = 1", "# mine\r\n\tx = 1"])
+def test_a_program_with_a_line_of_code_is_driven(marking, tmp_path, program):
+    (tmp_path / "in" / "good.py").write_bytes(program.encode())
+    assert mark(marking, FakeSession(CLOSED)).outcome == "closed"
+
+
 def test_what_does_not_drives_again_in_real_time(marking, capsys):
     session = FakeSession({**CLOSED, "outcome": BY_TIME}, CLOSED)
     found = mark(marking, session)

@@ -3,6 +3,7 @@
 import errno
 import os
 import re
+import shlex
 import subprocess
 import sys
 import textwrap
@@ -11,7 +12,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from run_session.files import check_space, write_whole
+from run_session.files import check_space, world_argument, write_whole
 
 # In a process of its own, whose files may get no longer than 1000 bytes: as on a full disk.
 WRITE_TWICE = textwrap.dedent("""
@@ -27,6 +28,12 @@ WRITE_TWICE = textwrap.dedent("""
     except OSError as refused:
         print(refused.errno, refused.filename)
 """)
+
+
+@pytest.mark.parametrize("path", ["/a/course.world", "/my runs/评分/it's.world"])
+def test_a_worlds_path_stays_one_word_in_a_launch_file(path):
+    name, _, value = world_argument(Path(path)).partition(":=")
+    assert name == "world_name" and shlex.split(f"-e ode {value}") == ["-e", "ode", path]
 
 
 def test_what_cannot_be_written_leaves_the_file_of_before(tmp_path):

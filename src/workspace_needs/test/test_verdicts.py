@@ -1,5 +1,8 @@
 """What becomes of a workspace's packages, and what `make deps` and catkin_make say of it."""
 
+import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -325,3 +328,18 @@ def test_catkin_make_isolated_does_too(tmp_path, monkeypatch, bare):
                          ("--pkg arm", "--pkg arm"),
                          ("--from-pkg=arm", "--from-pkg=arm")):
         assert catkin_make_isolated_words(typed.split())[0] == [*hook(), *given.split()]
+
+
+def test_an_interrupt_of_this_program_alone_ends_the_tool(tmp_path):
+    tool = tmp_path / "catkin_make"
+    tool.write_text("#!/bin/sh\necho begun\nexec sleep 60\n")
+    tool.chmod(0o755)
+    program = (f"from workspace_needs import build_commands as commands; "
+               f"commands.FOLDER = {str(tmp_path)!r}; "
+               f"commands._run('catkin_make', [], commands.LeftOut(lines=['arm is left out']))")
+    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE,
+                          text=True) as process:
+        assert process.stdout.readline() == "begun\n"
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20) == 130
+        assert process.stdout.read() == "arm is left out\n"

@@ -31,6 +31,7 @@ from evaluation.report import cell, mean, table
 from evaluation.run_page import RECORDING, begin_recording, write_run_page
 from evaluation.trial import Case, Trial
 from run_session import simulator
+from run_session.files import world_argument
 from run_session.launch import Launched
 from run_session.session import Session
 from trial_worlds.light import write_lit_world
@@ -194,7 +195,7 @@ class RaceTrial(Trial):
         folder = session.out / "drives"
         world = write_lit_world(WORLD, WORLD.parents[1] / "models", light, folder / case.name)
         stack.begin(task.script, [
-            f"world_name:={world}", f"x_pos:={x:.4f}", f"y_pos:={y:.4f}", f"yaw:={yaw:.4f}",
+            world_argument(world), f"x_pos:={x:.4f}", f"y_pos:={y:.4f}", f"yaw:={yaw:.4f}",
             f"seed:={case.seed}"], folder / f"{case.name}.log")
         _watch(stack, task)
         touched = stack.end()

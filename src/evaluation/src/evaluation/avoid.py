@@ -21,7 +21,7 @@ from evaluation.report import cell, mean, table
 from evaluation.run_page import RECORDING, begin_recording, write_run_page
 from evaluation.trial import Case, Trial
 from run_session.failure import RunError
-from run_session.files import Tail, find_package
+from run_session.files import Tail, find_package, world_argument
 from run_session.launch import Launched
 from run_session.master import look_up
 from run_session.session import Session
@@ -120,7 +120,7 @@ def bring_up(launched: Launched, world: Path, seed: int, avoider: str, state_log
     launched.start_roscore()
     begin_recording(launched.master_uri, world.with_suffix(f".{RECORDING}"))
     launched.start("roslaunch", [
-        "roslaunch", "evaluation", "avoid.launch", f"world_name:={world}", f"seed:={seed}",
+        "roslaunch", "evaluation", "avoid.launch", world_argument(world), f"seed:={seed}",
         f"avoider:={avoider}", f"state_log:={state_log}", "paused:=true", "real_time_factor:=0"])
     launched.wait_for(f"model {WAFFLE}", lambda: WAFFLE in models(), START_LIMIT)
     launched.wait_for(f"who reads /scan ({avoider})", lambda: _connected(launched.master_uri),

@@ -15,7 +15,7 @@ from racecar_description.track.closed_line import load_track
 from evaluation.lap import Disturbance
 from evaluation.report import cell, mean
 from evaluation.trial import Case, Trial
-from run_session.files import find_package
+from run_session.files import find_package, world_argument
 from run_session.session import Session
 from trial_worlds.light import write_lit_world
 
@@ -53,7 +53,7 @@ class Outing:
     def arguments(self, seed: int, world: Path) -> list[str]:
         """The command line of course_run, without the folder for results."""
         x, y, yaw = self.disturbance.start(load_track(self.venue.track))
-        named = (f"world_name:={world}", f"x_pos:={x:.6f}", f"y_pos:={y:.6f}", f"yaw:={yaw:.6f}",
+        named = (world_argument(world), f"x_pos:={x:.6f}", f"y_pos:={y:.6f}", f"yaw:={yaw:.6f}",
                  f"camera_noise:={self.disturbance.camera_noise:.6f}",
                  f"lockstep_timeout:={ANSWER_LIMIT:g}", *self.launch)
         return ["--course", self.course, "--track", str(self.venue.track),

@@ -46,7 +46,7 @@ from evaluation.report import write_json
 from evaluation.run_page import RUN_PAGE
 from evaluation.track_score import BAND, SETTLED, Task, TrackScorer
 from run_session.course_file import CourseFile
-from run_session.files import find_package
+from run_session.files import find_package, world_argument
 
 
 def summarize(drive: TrackScorer, start: Start) -> dict:
@@ -273,7 +273,7 @@ class TrackRun(CarDrive):
         world = self.out / f"{options.scene}-{options.seed}.world"
         world.write_text(world_text(self.scene), encoding="utf-8")
         patient = [f"lockstep_timeout:={ANSWER_LIMIT:g}"] if options.fast else []
-        return (PACKAGE, LAUNCH, "gui:=false", f"world_name:={world}",
+        return (PACKAGE, LAUNCH, "gui:=false", world_argument(world),
                 f"tracker:={options.tracker}", f"x_pos:={start.x:.6f}", f"y_pos:={start.y:.6f}",
                 f"yaw:={start.yaw:.6f}", f"seed:={options.seed}", *self.fast_arguments(), *patient)
 

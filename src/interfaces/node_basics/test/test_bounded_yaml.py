@@ -22,6 +22,15 @@ def test_what_is_just_deep_enough_is_read():
     assert found == []
 
 
+@pytest.mark.parametrize("digits", [":1" * 100_000, "0" * 200_000, ":1" * 100_000 + ".5"])
+def test_a_number_of_thousands_of_digits_is_refused_before_it_takes_time(digits):
+    began = time.process_time()
+    with pytest.raises(yaml.constructor.ConstructorError, match="a number of more than 1000"):
+        yaml.load(f"resolution: 1{digits}", BoundedLoader)
+    assert time.process_time() - began < 2.0
+    assert yaml.load("resolution: 1:30", BoundedLoader) == {"resolution": 90}
+
+
 def test_merge_keys_are_refused():
     with pytest.raises(yaml.constructor.ConstructorError, match="merge"):
         yaml.load("a: &a {x: 1}\nb: {<<: *a}\n", BoundedLoader)

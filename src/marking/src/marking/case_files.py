@@ -20,7 +20,7 @@ from evaluation.lap_trial import MODEL_PATH
 from marking.rules import Limits, Rules
 from run_session.course_file import CourseFile, load_course
 from run_session.failure import RunError
-from run_session.files import find_package
+from run_session.files import find_package, world_argument
 from trial_worlds.light import write_lit_world
 
 # By course: its name is our launch file's; the value is a course file of evaluation.
@@ -49,14 +49,14 @@ def make_scene(rules: Rules, track: int, seed: int, folder: Path) -> Scene:
     lit = write_lit_world(world, models, draw.light, folder / "world")
     x, y, yaw = draw.start(load_track(line))
     arguments = {
-        "world_name": lit, "x_pos": f"{x:.6f}", "y_pos": f"{y:.6f}", "yaw": f"{yaw:.6f}",
+        "x_pos": f"{x:.6f}", "y_pos": f"{y:.6f}", "yaw": f"{yaw:.6f}",
         "seed": seed, "gui": "false", "paused": "true", "real_time_factor": 0,
         "pub_clock_frequency": 30, "lockstep": ",".join(driven(rules.course).lockstep),
         "lockstep_timeout": f"{rules.limits.answer_s:g}",
         **dict(zip(("camera_width", "camera_height"), rules.camera, strict=False))}
     folders = (folder / "world" / "models", models, os.environ.get(MODEL_PATH, ""))
     return Scene(line, ":".join(map(str, folders)),
-                 [f"{name}:={value}" for name, value in arguments.items()])
+                 [world_argument(lit), *(f"{name}:={value}" for name, value in arguments.items())])
 
 
 def _draw(rules: Rules, seed: int) -> Disturbance:

@@ -114,7 +114,7 @@ def _refuse_without_code(program: Path, name: str) -> None:
     """Raise UnpackError for a program without a single line of code."""
     comments = False
     with program.open("rb") as file:
-        for line in file:
+        for line in file.read().splitlines():  # Python's, which end at a lone CR, too
             text = line.removeprefix(codecs.BOM_UTF8).strip()
             if text and not text.startswith(b"#"):
                 return

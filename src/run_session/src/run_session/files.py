@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import shlex
 from pathlib import Path
 
 import rospkg
@@ -46,6 +47,11 @@ def write_whole(path: Path, content: bytes) -> None:
     finally:
         with contextlib.suppress(OSError):  # it has been renamed, or was never created
             half.unlink()
+
+
+def world_argument(world: Path) -> str:
+    """What roslaunch is told of a world's file; its path, which may have spaces, stays one word."""
+    return f"world_name:={shlex.quote(str(world))}"
 
 
 class Tail:

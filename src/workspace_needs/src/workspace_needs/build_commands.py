@@ -25,6 +25,7 @@ from workspace_needs.verdicts import Verdict, judge
 from workspace_needs.workspace import WorkspaceError, hide
 
 FOLDER = "/usr/bin"  # where Debian's own commands are
+PATIENCE = 2  # s after Ctrl-C, in which the tool ends by itself
 CHOSEN = ("--pkg", "--from-pkg")  # catkin_make_isolated takes no --ignore-pkg with these
 
 
@@ -163,8 +164,10 @@ def _chosen(args: list[str]) -> set[str]:
     names, wanted = set(), False
     for word in args:
         if word.startswith("-"):
-            wanted = word in ("--pkg", "--only-pkg-with-deps")
             option, _, value = word.partition("=")
+            wanted = option in ("--pkg", "--only-pkg-with-deps")
+            if wanted and value:
+                names.add(value)
             if option.startswith("-DCATKIN_WHITELIST_PACKAGES"):
                 names.update(filter(None, value.split(";")))
         elif wanted:
@@ -187,7 +190,9 @@ def _run(tool: str, args: list[str], left: LeftOut) -> NoReturn:
     if not left.lines:
         os.execv(command[0], command)
     with subprocess.Popen(command) as process:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the terminal sends it to both
+        # A terminal sends Ctrl-C to both, `kill -INT` only to this one.
+        signal.signal(signal.SIGINT, lambda *_: signal.alarm(PATIENCE))
+        signal.signal(signal.SIGALRM, lambda *_: process.send_signal(signal.SIGINT))
         signal.signal(signal.SIGTERM, lambda *_: process.terminate())
         code = process.wait()
     sys.exit(left.end(code if code >= 0 else 128 - code))

@@ -6,11 +6,14 @@ from typing import Any
 
 import yaml
 
-DEEPEST = 100  # open brackets; PyYAML's time grows with their square
+DEEPEST = 100  # open brackets; PyYAML's time grows with their square, and with that of
+LONGEST_NUMBER = 1000  # characters
 
 
 class BoundedLoader(yaml.SafeLoader):
-    """SafeLoader without merge keys (`<<`), and for brackets at most DEEPEST deep."""
+    """SafeLoader without merge keys (`<<`), and for brackets at most DEEPEST deep and numbers
+    of at most LONGEST_NUMBER characters.
+    """
 
     def flatten_mapping(self, node: yaml.Node) -> None:
         """Leaves the key as it is, which SafeLoader then refuses: merges can double each line."""
@@ -21,6 +24,14 @@ class BoundedLoader(yaml.SafeLoader):
             raise yaml.scanner.ScannerError(
                 None, None, f"more than {DEEPEST} brackets are open", self.get_mark())
         super().fetch_flow_collection_start(token)
+
+
+    def construct_scalar(self, node: yaml.ScalarNode) -> str:
+        """As SafeLoader's; ConstructorError for a number of too many digits."""
+        if node.tag.endswith((":int", ":float")) and len(node.value) > LONGEST_NUMBER:
+            raise yaml.constructor.ConstructorError(
+                None, None, f"a number of more than {LONGEST_NUMBER} characters", node.start_mark)
+        return super().construct_scalar(node)
 
 
 class PlainLoader(BoundedLoader):
