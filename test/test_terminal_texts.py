@@ -154,6 +154,26 @@ def test_setup_writes_the_line_that_sources_into_bashrc(tmp_path: Path) -> None:
     assert typed()[2] == ["alias l=ls", line]
 
 
+@pytest.mark.parametrize(("built", "bashrc", "offers"), [
+    ("yes", "alias l=ls", True), ("yes", f"source {ROOT}/devel/setup.bash  # ros1-driving-courses",
+                                  False), ("no", "alias l=ls", False)])
+@pytest.mark.parametrize(("language", "begins"), [("en", "In each new"), ("zh_CN", "每个新终端")])
+def test_setup_ends_with_what_to_type_in_each_terminal(
+        tmp_path: Path, built: str, bashrc: str, offers: bool, language: str, begins: str) -> None:
+    (tmp_path / ".bashrc").write_text(f"{bashrc}\n")
+    script = (ROOT / "scripts/setup.sh").read_text()
+    end = script[script.index('[ "$did" = yes ]'):]  # what is before takes minutes
+    done = subprocess.run(
+        ["bash", "-c", ". scripts/common.sh; . scripts/setup/workspace.sh; "
+         f"did={built} build=yes bashrc=no; {end}"],
+        cwd=ROOT, env=os.environ | {"HOME": str(tmp_path), "LANG": "C.UTF-8", "LC_ALL": "",
+                                    "LANGUAGE": language},
+        text=True, capture_output=True, check=False)
+    last = done.stdout.splitlines()[-1]
+    assert last.startswith(begins) == offers, done
+    assert not offers or (f"source {ROOT}/devel/setup.bash" in last and "BASHRC=1" in last)
+
+
 @pytest.mark.parametrize("what", ["a folder", "a folder without a name"])
 def test_a_bashrc_that_cannot_be_written_is_one_line(tmp_path: Path, what: str) -> None:
     home = tmp_path

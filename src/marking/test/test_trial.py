@@ -34,8 +34,7 @@ class FakeSession:
         self._reports, self.cases = iter(reports), []
         self.progress = StatusLine()
 
-    def drive(self, _command, folder, _what, _limit, environment):
-        assert environment["ROS_HOME"].startswith(str(folder))  # the user's own may be full
+    def drive(self, _command, folder, _what, _limit, _environment):
         self.cases.append(read_case(folder))
         report = next(self._reports)
         if isinstance(report, Exception):

@@ -1,11 +1,14 @@
-"""When roscore is up, and that simulated time goes on."""
+"""When roscore is up, that simulated time goes on, and that a full disk is named."""
 
+import errno
+import os
 import threading
 import time
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
+from run_session import launch
 from run_session.failure import RunError
 from run_session.launch import Launched
 from run_session.master import free_port, is_up
@@ -48,3 +51,28 @@ def test_time_that_stands_still_ends_the_run(tmp_path):
         with pytest.raises(RunError, match=r"stood still at 2\.0 s for"):
             while time.monotonic() < until:
                 launched.check_time(2.0, 0.05)
+
+
+def test_a_home_that_is_full_is_not_written_to(tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", "/proc/none")  # where even root can write nothing
+    monkeypatch.setenv("ROS_HOME", "/proc/none")
+    monkeypatch.setenv("ROS_MASTER_URI", "")
+    with Family() as family:
+        launched = Launched(family, tmp_path / "log")
+        launched.start_roscore()
+        assert is_up(launched.master_uri)
+        assert os.environ["ROS_HOME"] == str(tmp_path / "log")  # this process's nodes write, too
+
+
+@pytest.mark.parametrize("command", [
+    ["false"], ["sh", "-c", "echo '[a-1] process has died [pid 1, exit code 1'; exec sleep 100"]])
+def test_a_program_that_ends_as_the_disk_is_full_names_the_disk(tmp_path, monkeypatch, command):
+    def full(folder):
+        raise OSError(errno.ENOSPC, "No space left on device", str(folder))
+
+    monkeypatch.setattr(launch, "check_space", full)
+    with Family() as family:
+        launched = Launched(family, tmp_path / "log")
+        launched.start("course", command)
+        with pytest.raises(OSError, match=r"No space left .*log"):
+            launched.wait_for("the course", lambda: False, 60.0)

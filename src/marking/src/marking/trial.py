@@ -42,7 +42,7 @@ from marking.submissions import UnpackError, digest, find_submissions, one_line,
 from run_session.failure import RunError
 from run_session.files import find_package
 from run_session.launch import LOOPBACK
-from run_session.session import LOG, Session
+from run_session.session import Session
 
 NOT_RUN, SUBMISSION = "not run", "submission"
 TIMED = "driven in real time: it did not answer each image with a command"
@@ -150,8 +150,7 @@ class MarkingTrial(Trial):
         file.write(folder)
         command = [*namespace(self.options.kind), sys.executable, "-P", "-m",
                    "marking.case_runner", str(folder)]
-        environment = {**os.environ, MODEL_PATH: scene.models, "ROS_HOSTNAME": LOOPBACK,
-                       "ROS_HOME": str(folder / LOG)}  # not ~/.ros, which may be on a full disk
+        environment = {**os.environ, MODEL_PATH: scene.models, "ROS_HOSTNAME": LOOPBACK}
         limits = self.options.rules.limits
         limit = limits.start_s + limits.wall_s + 3 * STARTUP_LIMIT
         how = "driving in real time" if file.timed else "driving"

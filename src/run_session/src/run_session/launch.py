@@ -13,6 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from run_session.failure import RunError
+from run_session.files import check_space
 from run_session.master import is_up, own_port, take_turn
 from run_session.processes import INTERRUPT_TIME, Child, Family
 
@@ -51,6 +52,7 @@ class Launched:
             os.environ,
             ROS_MASTER_URI=self.master_uri,
             ROS_LOG_DIR=str(self.log_folder),
+            ROS_HOME=str(self.log_folder),  # not ~/.ros, which may be on a full disk
             PYTHONUNBUFFERED="1",
             **environment,
         )
@@ -62,7 +64,8 @@ class Launched:
 
     def start_roscore(self) -> None:
         """Start roscore and wait until it is up; this process's nodes then use it."""
-        os.environ["ROS_MASTER_URI"] = self.master_uri
+        for name in ("ROS_MASTER_URI", "ROS_HOME"):
+            os.environ[name] = self._environment[name]
         self.start(Path(ROSCORE_LOG).stem, ["roscore", "-p", str(self.port)])
         self.wait_for("roscore", lambda: is_up(self.master_uri), ROSCORE_TIME)
         self._turn.close()
@@ -118,7 +121,7 @@ class Launched:
         self._family.end(child, limit)
 
     def check(self, sim_time: float | None) -> None:
-        """RunError if a process that the run needs has died."""
+        """RunError if a process that the run needs has died, OSError if the disk is full, too."""
         when = f"before the {self._vehicle} drove"
         if sim_time is not None:
             when = f"at simulated time {sim_time:.1f} s"
@@ -127,10 +130,12 @@ class Launched:
                 self._said.append(line)
                 death = self._death_in(child, line)
                 if death:
+                    check_space(self.log_folder)
                     raise RunError(f"{death} {when}; log: {child.log}", self.tail())
         for child in self._children:
             code = child.process.poll()
             if code is not None:
+                check_space(self.log_folder)
                 raise RunError(
                     f"{child.name} ended ({describe_exit(code)}) {when}; log: {child.log}",
                     self.tail(),
