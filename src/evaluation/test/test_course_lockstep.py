@@ -159,7 +159,7 @@ def test_each_controller_of_the_racecar_is_waited_for():
 
 @pytest.mark.parametrize(("states", "wanted", "said"), [
     ({"drive": "running", "joints": "waiting"}, {"drive"}, None),
-    ({}, set(), "controller of the car (spawned and started)"),
+    ({}, set(), "the car's controllers (spawned and started)"),
     ({"joints": "running"}, {"drive"}, "controller drive (spawned and started)"),
     ({"drive": "initialized", "j": "running"}, set(), "controller drive (spawned and started)"),
 ])

@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from dataclasses import replace
 
 import made_up
 import pytest
@@ -123,6 +124,13 @@ def test_a_program_without_code_is_not_driven(marking, tmp_path, capsys, program
 def test_a_program_with_a_line_of_code_is_driven(marking, tmp_path, program):
     (tmp_path / "in" / "good.py").write_bytes(program.encode())
     assert mark(marking, FakeSession(CLOSED)).outcome == "closed"
+
+
+def test_the_line_names_what_cost_most(marking):
+    trial, _ = marking
+    lost = ("1.7 points: 3.8 cm RMS beside the line", "5.0 points: 0.150 m/s on average")
+    found = replace(mark(marking, FakeSession(CLOSED)), points=93.3, lost=lost)
+    assert trial.line(found).endswith("closed; lost 5.0 points: 0.150 m/s on average")
 
 
 def test_what_does_not_drives_again_in_real_time(marking, capsys):

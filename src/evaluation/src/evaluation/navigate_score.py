@@ -192,8 +192,9 @@ def lines(result: Result) -> list[str]:
     found = []
     if mapping := result.mapping:
         agreement = MapAgreement(**{each.name: mapping[each.name] for each in fields(MapAgreement)})
-        found += [f"map: {agreement}", "trajectory while mapping: ATE"
-                  f" {mapping['ate_rmse_m'] * 100:.1f} cm, {_drove(mapping)}"]
+        found += [f"map: {agreement}",
+                  f"trajectory while mapping: ATE {mapping['ate_rmse_m'] * 100:.1f} cm",
+                  ": ".join(("driven while mapping", _drove(mapping)))]
     if place := result.navigation:
         rows = [{"number": number, **each} for number, each in enumerate(place["goals"], start=1)]
         told = place["told_off"]
@@ -202,7 +203,7 @@ def lines(result: Result) -> list[str]:
             f"localisation: {_both(place['mean_off'])} off in the mean,"
             f" {_both(place['largest_off'])} at most"
             + (f"; was told {_both(told)} off" if told else ""),
-            f"driven {_drove(place)}"]
+            f"driven: {_drove(place)}"]
     return found
 
 

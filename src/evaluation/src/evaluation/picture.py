@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -188,7 +189,8 @@ def below(figure: Figure, more: float) -> Axes:
 
 
 def legend(axes: Axes) -> None:
-    """Add a legend where it covers least."""
+    """Add a legend where it covers least; matplotlib warns if that takes a second."""
+    warnings.filterwarnings("ignore", "Creating legend with loc")
     axes.legend(facecolor=PAPER, edgecolor=GRID, labelcolor=TEXT, fontsize=9)
 
 

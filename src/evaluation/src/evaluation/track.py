@@ -75,8 +75,9 @@ def lines(report: dict) -> list[str]:
     """The summary for people to read."""
     found = [f"{report['tracker']}, scene {report['scene']}, seed {report['seed']}: "
              f"{report['outcome']}"]
-    near = "never" if report["approach_s"] is None else f"after {report['approach_s']:.1f} s"
-    found.append(f"near the cylinder {near}; {report['distance_m']:.2f} m driven in "
+    near = ("never near the cylinder" if report["approach_s"] is None else
+            f"near the cylinder after {report['approach_s']:.1f} s")
+    found.append(f"{near}; {report['distance_m']:.2f} m driven in "
                  f"{report['simulated_s']:.1f} s; smallest gap "
                  f"{report['least_gap_m'] * 100:.0f} cm")
     if report["rms_error_m"] is not None:

@@ -81,6 +81,8 @@ def main():
     client.send_goal(goal_at(x, y, math.radians(degrees)), feedback_cb=tell_progress)
     rospy.on_shutdown(lambda: stop_if_driving(client))
     client.wait_for_result()
+    if rospy.is_shutdown():
+        sys.exit("stopped on the way: the goal is cancelled")
     rospy.loginfo(client.get_goal_status_text())
     sys.exit(0 if client.get_state() == GoalStatus.SUCCEEDED else 1)
 

@@ -40,6 +40,23 @@ def test_ctrl_c_before_there_is_a_clock_asks_nobody_any_more(script, monkeypatch
         script.main()
 
 
+def test_ctrl_c_on_the_way_says_that_the_goal_is_cancelled(script, monkeypatch):
+    """Not move_base's text of when the goal was accepted."""
+    is_over = []
+    client = type("Client", (), {
+        "send_goal": lambda *_, **__: None, "wait_for_result": lambda _: is_over.append(True)})
+    monkeypatch.setattr(script.sys, "argv", ["send_goal.py", "1", "1"])
+    monkeypatch.setattr(script.rospy, "init_node", lambda _name: None)
+    monkeypatch.setattr(script.rospy, "is_shutdown", lambda: bool(is_over))
+    monkeypatch.setattr(script.rospy, "on_shutdown", lambda _: None)
+    monkeypatch.setattr(script.rospy, "get_time", lambda: 1.0)
+    monkeypatch.setattr(script.rospy.Time, "now", lambda: script.rospy.Time(1))
+    monkeypatch.setattr(script.actionlib, "SimpleActionClient", lambda *_: client())
+    monkeypatch.setattr(script, "wait_for_move_base", lambda _: None)
+    with pytest.raises(SystemExit, match=r"^stopped on the way: the goal is cancelled$"):
+        script.main()
+
+
 def test_a_move_base_that_does_not_run_is_said_soon(script, monkeypatch):
     said, waited = [], []
     client = type("Client", (), {"wait_for_server": lambda _, time: waited.append(time.to_sec())})

@@ -192,7 +192,8 @@ class MarkingTrial(Trial):
         had = f"{result.name}: {result.points:g} points, {result.outcome}"
         if not result.lost:
             return had
-        lost, _, why = result.lost[0].partition(" points: ")
+        lost, _, why = max((each.partition(" points: ") for each in result.lost),
+                           key=lambda each: float(each[0]))
         return f"{had}; lost {lost} points: {why}"
 
     def table(self, results: Sequence[Mark]) -> str:

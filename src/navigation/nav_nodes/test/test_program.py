@@ -114,6 +114,18 @@ def test_what_ends_by_itself_says_how(start, tmp_path, text, status, said):
     assert ("Traceback" in process.said()) == (text == FAILING)
 
 
+@pytest.mark.parametrize("before, status", [("", 1), ("unset PYTHONUNBUFFERED; ", 7)])
+def test_a_reader_that_has_ended_costs_no_traceback(start, tmp_path, before, status):
+    (tmp_path / "made_up.py").write_text("def main():\n    print('x')\n    return 7\n", "utf-8")
+    process = start("sh", "-c", f"""{before}({sys.executable} -c "
+from nav_nodes.program import run
+run('made_up')"; echo ended $? >&2) | exec true""",
+                    PYTHONPATH=f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}")
+    process.wait(60)
+    wait_until(lambda: "ended" in process.said())
+    assert process.said() == f"ended {status}\n"
+
+
 PEAKS = """
 import sys
 import numpy as np

@@ -288,7 +288,8 @@ def missing_controller(states: Mapping[str, str], wanted: Set[str]) -> str | Non
     started = {name for name, state in states.items() if state in ("running", "waiting")}
     missing = sorted((wanted | states.keys()) - started)
     if missing or not states:
-        return f"controller {(missing or ['of the car'])[0]} (spawned and started)"
+        name = f"controller {missing[0]}" if missing else "the car's controllers"
+        return f"{name} (spawned and started)"
     return None
 
 

@@ -8,6 +8,7 @@ happens while signals are already handled.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import gc
 import importlib
@@ -47,8 +48,8 @@ def run(module: str) -> NoReturn:
         status = _status(importlib.import_module(module).main())
     except SystemExit as end:
         status = _status(end.code)
-    except BaseException:  # at exit anything may be closed already
-        if not is_ending():
+    except BaseException as error:  # at exit anything may be closed already
+        if not is_ending() and not isinstance(error, BrokenPipeError):
             traceback.print_exc()
         status = 128 + _told[0] if _told else 1
     if is_ending():
@@ -56,7 +57,8 @@ def run(module: str) -> NoReturn:
     elif _begun.is_set():
         _shut_down("the program has ended")
     for stream in (sys.stdout, sys.stderr):
-        stream.flush()
+        with contextlib.suppress(OSError):  # the reader, as of `roslaunch ... | grep`, has ended
+            stream.flush()
     os._exit(status)  # Python's own exit waits for threads, and a second for Numba's objects
 
 
