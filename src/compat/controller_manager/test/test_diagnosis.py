@@ -88,7 +88,7 @@ def test_a_killed_manager_or_simulator_does_not_count(monkeypatch):
         dead.bind(("localhost", 0))
         monkeypatch.setattr(running.rosgraph, "Master", lambda _: SimpleNamespace(
             getSystemState=lambda: ([], [], [[name, ["n"]] for name in names]),
-            lookupService=lambda name: f"rosrpc://localhost:{dead.getsockname()[1]}"))
+            lookupNode=lambda _: f"http://localhost:{dead.getsockname()[1]}/"))
         assert "is the simulator running" in client.ManagerClient("car").absence("load_controller")
 
 
