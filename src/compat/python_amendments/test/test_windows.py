@@ -261,8 +261,8 @@ def test_python_without_cv2_loads_nothing_more():
 def test_a_module_is_watched_for_once():
     code = "import cv2; from usercustomize import Watch; print(sorted(Watch.waited_for))"
     waited_for = ("['catkin_pkg.packages', 'cv_bridge.boost.cv_bridge_boost', "
-                  "'joint_state_publisher', "
-                  "'roslaunch.loader', 'rospy.client', 'rospy.impl.tcpros_service', "
+                  "'joint_state_publisher', 'roslaunch.loader', 'roslaunch.pmon', "
+                  "'rospy.client', 'rospy.impl.tcpros_service', "
                   "'rospy.topics', 'tkinter', 'yaml']")
     assert run_python(code, {"DISPLAY": ""}).stdout.strip() == waited_for
 
