@@ -19,6 +19,9 @@ rules := $(shell awk -v RS= '{ for (i = 1; i <= split("$(MAKECMDGOALS)", verb, "
 rules += $(if $(findstring $$(WHERE),$(rules)),$(value WHERE))
 given := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
 unknown := $(strip $(foreach name,$(given),$(if $(findstring $$($(name)),$(rules)),,$(name))))
+# As typed: make would take a $ in them for a variable of its own.
+$(foreach name,$(given),$(eval override $(name) := $$(value $(name))))
+export $(given)
 $(if $(unknown),$(error $(shell scripts/help.sh --no-option "$(MAKECMDGOALS)" $(foreach word,$(unknown),$(call quoted,$(word)=)))))
 switches := $(foreach name,BASHRC CONTROL CPP FAST FILM PEOPLE QUICK RESUME,$(if $(findstring $$($(name)),$(rules)),$(name)))
 undecided := $(strip $(foreach name,$(switches),$(if $(filter-out 0 1 no yes false true,$(value $(name)))$(word 2,$(value $(name))),$(name)=)))

@@ -119,7 +119,7 @@ def test_make_names_the_nearest_command_and_option(words: str, english: str, chi
 
 @pytest.mark.parametrize(("word", "told"), [
     ("PEOPLE=0 1", "PEOPLE=: write 1 or 0"), ("SEED=1 2", "SEED=1 2: write a whole number"),
-    ("METHOD=a\"b' $$(id)", "no method 'a\"b' $(id)' (METHOD=)")])
+    ("METHOD=a\"b' $(id) $b$$c", "no method 'a\"b' $(id) $b$$c' (METHOD=)")])
 def test_a_value_reaches_a_script_as_it_was_typed(word: str, told: str) -> None:
     assert told in said(["make", "lane", word])
 

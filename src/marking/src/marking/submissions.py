@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 import contextlib
 import hashlib
 import lzma
@@ -113,10 +112,10 @@ def prepare(submission: Submission, folder: Path, patterns: Sequence[str]) -> Pa
 def _refuse_without_code(program: Path, name: str) -> None:
     """Raise UnpackError for a program without a single line of code."""
     comments = False
-    with program.open("rb") as file:
-        for line in file.read().splitlines():  # Python's, which end at a lone CR, too
-            text = line.removeprefix(codecs.BOM_UTF8).strip()
-            if text and not text.startswith(b"#"):
+    with program.open(encoding="utf-8-sig", errors="replace") as file:
+        for line in file:
+            text = line.strip()
+            if text and not text.startswith("#"):
                 return
             comments = comments or bool(text)
     raise UnpackError(f"{name} has only comments" if comments else f"{name} is empty")
