@@ -1,6 +1,8 @@
 """rosrun bullet_sim_ros check: what it finds, how it says so, and its exit code."""
 
+import os
 import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -8,6 +10,11 @@ import rospy
 from robot_texts import DRIVE, JOINTED, LAUNCH, ROBOT, WORLD
 from workspace_needs.check import contents
 from workspace_needs.check.command import main
+from workspace_needs.check.findings import UNCHECKED
+from workspace_needs.check.texts import TextChecker
+
+from bullet_sim_ros.interface import WORKS, read_interface, rows_by_name
+from bullet_sim_ros.package_paths import open_resources
 
 # A file is checked in a fork of this process, which must not hold engines or OpenGL of other tests.
 pytestmark = pytest.mark.processes
@@ -259,13 +266,71 @@ def test_a_hyphen_in_a_name_is_no_fault_where_the_spawner_gives_the_namespace(ch
 
 
 def test_time_and_memory_of_a_file_are_bounded(check, monkeypatch):
-    pile = "".join(f"<model name='m{n}'><link name='l'><collision name='c'><geometry><box/>"
-                   "</geometry></collision></link></model>" for n in range(700))
+    row = "".join(f"<model name='m{n}'><pose>{n} 0 0 0 0 0</pose><link name='l'><collision "
+                  "name='c'><geometry><box/></geometry></collision></link></model>"
+                  for n in range(900))
     monkeypatch.setattr(contents, "LONGEST", 0.5)
-    code, said = check("pile.world", WORLD.format(pile))
+    code, said = check("row.world", WORLD.format(row))
     assert code == 1
-    assert "pile.world: checking it takes longer than 0.5 s of processor time; simplify" in said
+    assert "row.world: checking it takes longer than 0.5 s of processor time; simplify" in said
     monkeypatch.setattr(contents, "LONGEST", 60.0)
     monkeypatch.setattr(contents, "MOST_BYTES", 2**23)
-    code, said = check("pile.world", WORLD.format(pile))
-    assert code == 1 and "pile.world: checking it needs more memory than there is" in said
+    code, said = check("row.world", WORLD.format(row))
+    assert code == 1 and "row.world: checking it needs more memory than there is" in said
+
+
+BOX = "<include><uri>model://unit_box</uri><name>b{0}</name>{1}</include>"
+LINK = "<link name='l{0}'>{1}</link>"
+JOINED = LINK + ("<joint name='j{0}' type='fixed'><parent>world</parent><child>l{0}</child>"
+                 "</joint>")
+MODEL = f"<model name='m{{0}}'>{{1}}{LINK.format('', '')}</model>"
+APART = "<pose>{0}0 0 0 0 0 0</pose>"
+IN_ONE = "<model name='m'><link name='l'/>{}</model>"
+
+
+@pytest.mark.parametrize("part, around", [
+    (BOX.format("{0}", ""), "{}"), (BOX.format("{0}", "<static>1</static>"), "{}"),
+    (MODEL.format("{0}", ""), "{}"), (MODEL.format("{0}", APART), "{}"),
+    (MODEL.format("{0}", ""), IN_ONE), (LINK.format("{0}", ""), IN_ONE),
+    (LINK.format("{0}", APART + "<collision name='c'><geometry><sphere/></geometry></collision>"),
+     IN_ONE),
+    (JOINED.format("{0}", ""), IN_ONE), (JOINED.format("{0}", APART), IN_ONE),
+    ("<visual name='v{0}'><geometry><sphere/></geometry></visual>",
+     "<model name='m'><link name='l'>{}</link></model>"),
+    ("<collision name='v{0}'><geometry><sphere/></geometry></collision>",
+     "<model name='m'><link name='l'>{}</link></model>")])
+def test_the_processor_time_for_a_world_is_linear(tmp_path, part, around):
+    texts = TextChecker(rows_by_name(read_interface()), open_resources(os.environ))
+    file = tmp_path / "w.world"
+
+    def seconds(count: int) -> float:
+        parts = "".join(part.format(number) for number in range(count))
+        file.write_text(f"<sdf version='1.6'><world name='w'>{around.format(parts)}</world></sdf>")
+        began = time.process_time()
+        assert texts.world_file(file)[0].status in (WORKS, UNCHECKED)
+        return time.process_time() - began
+
+    seconds(10)  # what is read only once
+    # Twice in proportion, 4 times by the square. Once more where another process was in the way.
+    assert any(seconds(1400) < 3 * max(seconds(700), 0.3) for _ in range(3))
+
+
+@pytest.mark.parametrize("count, poses, said", [
+    (31, "", "not checked   world w (31 models): 31 movable parts are at one place, 0 0 0.5, so "
+             "the simulation is not tried: each step would take long; give each a <pose>"),
+    (29, "", "works         world w (29 models)"),
+    (31, APART, "works         world w (31 models)"),
+    (31, "<static>1</static>", "works         world w (31 models)")])
+def test_many_movable_things_at_one_place_are_not_simulated(check, count, poses, said):
+    boxes = "".join(BOX.format(number, poses.format(number)) for number in range(count))
+    code, table = check("w.world", f"<sdf version='1.6'><world name='w'>{boxes}</world></sdf>")
+    assert code == 0 and said in table
+
+
+def test_many_links_without_joints_are_not_simulated(check):
+    links = "".join(LINK.format(number, APART.format(number) + "<collision name='c'><geometry>"
+                                "<sphere/></geometry></collision>") for number in range(401))
+    code, table = check("m.sdf", f"<sdf version='1.6'><model name='m'>{links}</model></sdf>")
+    assert code == 0
+    assert ("not checked   model m (401 links, 0 joints): 401 links of model m are connected by no "
+            "joint, so the simulation is not tried; make them models of their own") in table

@@ -6,7 +6,8 @@ import zipfile
 
 import pytest
 from workspace_needs.check import modules
-from workspaces import NODE, add_files, program_findings, script_findings
+from workspace_needs.check.workspaces import package_findings, workspace_findings
+from workspaces import NODE, add_files, add_package, program_findings, script_findings
 
 
 def test_modules_of_the_workspace_are_there(tmp_path):
@@ -24,6 +25,21 @@ def test_modules_of_the_workspace_are_there(tmp_path):
     assert [found.part for found in script_findings(path)] == ["line 3", "line 4"]
 
 
+@pytest.mark.parametrize("beside", ["", "devel"])
+def test_modules_of_another_repository_of_the_workspace_are_there(tmp_path, beside):
+    source = tmp_path / "src"
+    arm = add_package(source / "repository/src", "arm")
+    add_files(add_package(source, "hand"), {"src/grip/__init__.py": ""})
+    for folder, name in ((arm, "arm"), (source / "hand", "hand")):
+        add_files(folder, {"scripts/talk.py": NODE + "import grip, nobodys\n"})
+        add_package(folder.parent, name)
+    (tmp_path / beside).mkdir(exist_ok=True)
+    checked = package_findings(arm, [], False) if beside else workspace_findings(
+        tmp_path, [], False)
+    said = [found.how for found in checked if found.where.endswith("arm/scripts/talk.py")]
+    assert len(said) == 1 and "module nobodys" in said[0]
+
+
 def test_what_only_modules_import_is_not_named(tmp_path):
     for name in ("src/arm/a.py", "scripts/train.py", "test/unit/t.py"):
         add_files(tmp_path, {name: "import nobodys\n"})
@@ -39,6 +55,9 @@ def elsewhere(tmp_path, monkeypatch):
     for name in ("otherx/__init__.py", "otherx/utils/geometry.py", "namespacex/a.py"):
         (tmp_path / "lib" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "lib" / name).touch()
+    (tmp_path / "lib/madex").mkdir()
+    (tmp_path / "lib/madex/__init__.py").write_text("from madex import finder")
+    (tmp_path / "lib/madex/finder.py").write_text("import sys\nsys.meta_path.append(finder)")
     with zipfile.ZipFile(tmp_path / "x.egg", "w") as file:
         for name in ("carlax/__init__.py", "carlax/libc.py"):
             file.writestr(name, "")
@@ -51,6 +70,7 @@ def elsewhere(tmp_path, monkeypatch):
 @pytest.mark.parametrize("line, named", [
     ("from otherx.utils.geometry import area", ""), ("import otherx.utils.nothere", ""),
     ("import namespacex.a, carlax.libc, carlax", ""),
+    ("import madex.anything, madex.__init__, yaml.__init__", ""),
     ("import otherx.nothere", "otherx has no module nothere")])
 def test_namespaces_and_zip_files_are_not_looked_into(elsewhere, tmp_path, line, named):
     add_files(tmp_path / "p", {"scripts/n.py": NODE + line + "\n"})

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from workspace_needs.check import parameter_commands, sources
 from workspace_needs.check.command import main
+from workspace_needs.check.contents import files_of
 from workspace_needs.check.findings import HINT, PROBLEM, UNCHECKED, table
 from workspace_needs.workspace import _files
 from workspaces import NODE, add_files, program_findings, script_findings
@@ -216,6 +217,34 @@ def test_the_time_for_a_source_is_linear(tmp_path):
     began = time.process_time()
     assert program_findings(tmp_path) == []
     assert time.process_time() - began < 5  # a minute without bounds
+
+
+def test_the_time_for_a_packages_scripts_is_linear(tmp_path):
+    def seconds(count: int) -> float:
+        folder = add_files(tmp_path / str(count), {
+            f"scripts/talk_{number}.py": f"{NODE}'''{'word ' * 20_000}'''"
+            for number in range(count)})
+        began = time.process_time()
+        assert program_findings(folder) == []
+        return time.process_time() - began
+
+    seconds(5)  # what is read only once
+    assert any(seconds(300) < 6 * seconds(100) for _ in range(3))  # 3 times in proportion
+
+
+def test_a_file_that_cannot_be_read_hides_no_others_faults(tmp_path, monkeypatch):
+    add_files(tmp_path, {"scripts/node.py": f"{NODE}import nobodys\n", "CMakeLists.txt": "",
+                         "a.launch": "<launch/>", "r.xacro": "<robot/>"})
+    read = Path.read_text
+
+    def locked(path, *words):
+        if path.suffix in (".txt", ".xml", ".launch", ".xacro"):
+            raise PermissionError(13, "Permission denied")
+        return read(path, *words)
+
+    monkeypatch.setattr(Path, "read_text", locked)
+    assert [found.part for found in program_findings(tmp_path)] == ["line 4"]
+    assert files_of(tmp_path) == [tmp_path / "a.launch"]
 
 
 def test_a_pipe_is_not_read(node, tmp_path):

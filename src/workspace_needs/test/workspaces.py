@@ -42,7 +42,7 @@ def add_files(folder: Path, files: Mapping[str, str]) -> Path:
 
 def program_findings(folder: Path) -> list[Finding]:
     """As if check was started anew, which reads each file once."""
-    for cached in (modules._names_below, packages._scripts_below, packages._imported):
+    for cached in (modules._names_below, packages._naming, packages._imported):
         cached.cache_clear()
     return [found for found in sources.program_findings(folder) if found.status != WORKS]
 

@@ -288,12 +288,21 @@ def test_ctrl_c_while_it_registers_is_no_traceback():
         assert registers.returncode == 128 + signal.SIGINT
 
 
-def test_a_wrong_address_of_the_master_is_said():
-    waits = node("import rospy; rospy.init_node('lesson')", ROS_MASTER_URI="localhost:11311")
+@pytest.mark.parametrize("uri", ["localhost:11311", "http://localhost:99999", "http://localhost:0",
+                                 "http://localhost"])
+def test_a_wrong_address_of_the_master_ends_it_with_a_line(uri):
+    ends = node("import rospy; rospy.init_node('lesson')", ROS_MASTER_URI=uri)
+    assert ends.communicate(timeout=LIMIT)[1] == (
+        f"ROS_MASTER_URI is {uri}, and must be as http://localhost:11311\n")
+    assert ends.returncode == 1
+
+
+def test_a_master_with_an_address_of_ipv6_is_waited_for():
+    waits = node("import rospy; rospy.init_node('lesson')", ROS_MASTER_URI="http://[::1]:9")
     said = waits.stderr.readline()
     waits.kill()
     waits.communicate()
-    assert said == "ROS_MASTER_URI is localhost:11311, and must be as http://localhost:11311\n"
+    assert said.startswith("No ROS master at http://[::1]:9. Type roscore")
 
 
 def test_at_pythons_prompt_ctrl_c_is_the_prompts(gone):

@@ -6,7 +6,6 @@ For a ROS master, the first image, scan or odometry, a service, a simulator that
 import contextlib
 import difflib
 import os
-import re
 import signal
 import sys
 import threading
@@ -24,10 +23,8 @@ SIMULATOR = "gazebo"  # node name, in any namespace
 GRACE = 5.0  # s, wall: a node that ends together with its simulator says nothing
 OF_A_LAUNCH = "__log:="  # an argument of its nodes, which start before what they wait for
 LAUNCH_GRACE = 20.0  # s, wall
-IS_URI = re.compile(r"http://[^/:]+:\d{1,5}/?")
 NO_MASTER = ("No ROS master at %s. Type roscore in another terminal, or start the course there: "
              "%s; this program then goes on by itself.")
-BAD_URI = "ROS_MASTER_URI is %s, and must be as http://localhost:11311"
 NO_SIMULATOR = ("Nothing on %s yet: nobody publishes it, and no simulator runs. Start the course "
                 "in another terminal: %s; this program then goes on by itself.")
 OTHER_TOPIC = ("Nothing on %s yet: nobody publishes it. If %s is meant, end this program and start "
@@ -81,17 +78,18 @@ def amend_client(client):
 
 
 def wait_for_master():
-    """Print a line if no master listens, and wait for it."""
+    """Print a line if no master listens, and wait for it; end if none can at this URI."""
     import rosgraph
     import rospy
 
     uri = rosgraph.get_master_uri()
     if rospy.core.is_initialized() or not uri:  # rospy says what is wrong with an empty one
         return
-    if not IS_URI.fullmatch(uri):
-        print(translated(BAD_URI % uri), file=sys.stderr, flush=True)
-    else:
-        listening.wait_for_master(uri, translated(NO_MASTER % (uri, course())))
+    if fault := listening.fault_of(uri):
+        if hasattr(sys, "ps1"):
+            raise rospy.exceptions.ROSInitException(translated(fault))
+        sys.exit(translated(fault))
+    listening.wait_for_master(uri, translated(NO_MASTER % (uri, course())))
 
 
 def amend_services(services):

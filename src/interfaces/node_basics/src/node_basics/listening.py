@@ -1,5 +1,6 @@
 """Whether a ROS master or a node listens at its URI, and to wait for a master."""
 
+import re
 import socket
 import sys
 import time
@@ -7,6 +8,15 @@ from urllib.parse import urlsplit
 
 ANSWER_TIME = 2.0  # s, wall, to connect
 LOOK_AGAIN = 0.2  # s, wall
+URI = re.compile(r"http://(?:[^/:]+|\[[\da-fA-F:.]+\]):([1-9]\d{0,4})/?")
+MOST = 65535  # of ports
+WRONG = "ROS_MASTER_URI is %s, and must be as http://localhost:11311"
+
+
+def fault_of(uri: str) -> str:
+    """What is wrong with a master's URI, in a line; empty: nothing."""
+    found = URI.fullmatch(uri)
+    return "" if found and int(found[1]) <= MOST else WRONG % uri
 
 
 def listens(uri: str) -> bool:

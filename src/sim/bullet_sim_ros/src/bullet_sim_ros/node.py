@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import rosgraph
 import rospy
-from node_basics.listening import wait_for_master
+from node_basics.listening import fault_of, wait_for_master
 from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
@@ -171,10 +171,11 @@ def main() -> int:
     options = parse(rospy.myargv(sys.argv)[1:])
     sys.setswitchinterval(SWITCH_INTERVAL)
     sys.stdout.reconfigure(line_buffering=True)  # into a file or pipe, too
-    if not rosgraph.is_master_online() and (unreadable := unreadable_world(options.world)):
-        print(f"[FATAL] {unreadable}", file=sys.stderr)
-        return 1
     uri = rosgraph.get_master_uri()
+    if fault := fault_of(uri) or (not rosgraph.is_master_online()
+                                  and unreadable_world(options.world)):
+        print(f"[FATAL] {fault}", file=sys.stderr)
+        return 1
     wait_for_master(uri, f"[WARN] {NO_MASTER % uri}")
     send_promptly()
     keep_every_publisher()

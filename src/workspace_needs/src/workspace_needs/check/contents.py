@@ -15,6 +15,7 @@ from bullet_sim_ros.interface import read_interface, rows_by_name
 from bullet_sim_ros.package_paths import open_resources
 from workspace_needs.check.findings import HINT, WORKS, Finding, problem
 from workspace_needs.check.launches import NONE_UNBUILT, LaunchChecker, Unbuilt
+from workspace_needs.check.modules import text_of
 from workspace_needs.check.packages import has_interpreter, is_python
 from workspace_needs.check.sources import holds_python, program_findings, script_findings
 from workspace_needs.check.texts import TextChecker
@@ -75,7 +76,7 @@ class Check:
             works = all(each.status == HINT for each in found)
             return [*found, *([Finding(str(path), what, WORKS)] if works else [])]
         values = dict(word.split(":=", 1) for word in self._arguments if ":=" in word)
-        if path.suffix == ".sdf" and "<world" in path.read_text("utf-8", "replace"):
+        if path.suffix == ".sdf" and "<world" in text_of(path):
             return self._texts.world_file(path)
         return self._texts.model_file(path, values, shown_only=not alone)
 
@@ -103,7 +104,7 @@ def files_of(folder: Path) -> list[Path]:
 
     A xacro file is a robot if it has links and no other of the package includes it.
     """
-    macros = {path: path.read_text("utf-8", "replace") for path in sorted(folder.rglob("*.xacro"))
+    macros = {path: text_of(path) for path in sorted(folder.rglob("*.xacro"))
               if path.is_file()}
     included = {Path(name).name for text in macros.values() for name in INCLUDED.findall(text)}
     robots = [path for path, text in macros.items()

@@ -22,15 +22,17 @@ ENDINGS = {"msg": ("",), "srv": ("", "Request", "Response")}  # of classes made 
 SOURCES = (".py", ".so", ".c", ".cc", ".cpp", ".cxx", ".pyx", ".i", ".proto")  # of modules
 BUILT = re.compile(r"(?:add_library|add_module|swig_add_\w+)\s*\(\s*([\w-]+)", re.IGNORECASE)
 ALIKE = 0.75
+OF_WORKSPACES = ("devel", "build", ".catkin_workspace", ".catkin_tools")  # beside src/
+Source = tuple[Path, bool]  # a folder with modules, and whether those below it are looked through
 
 
-def why_no_import(module: str, name: str, path: Path, folder: Path) -> str:
+def why_no_import(module: str, name: str, path: Path, source: Source) -> str:
     """Why the script at `path` cannot `import module`, or `from module import name` if given.
 
-    "" if it can or nobody knows. `folder`: of its package.
+    "" if it can or nobody knows. `source`: of its package.
     """
     first = module.partition(".")[0]
-    own = (_names_below(path.parent, False), _names_below(*workspace_of(folder)))
+    own = (_names_below(path.parent, False), _names_below(*source))
     if any(first in names for names in own):
         return ""  # perhaps made by a build
     return _why_not_here(module, name, own)
@@ -94,8 +96,11 @@ def _why_no_submodule(name: str) -> str:
         if not places:  # a module that makes others, say
             return ""
         there = [each.name for each in pkgutil.iter_modules(places)]
-        if part not in there and not any(os.path.isdir(os.path.join(each, part))
+        if part not in (*there, "__init__") and not any(os.path.isdir(os.path.join(each, part))
                                          for each in places):
+            if any("sys.meta_path" in text_of(file)  # it makes modules of its own
+                   for each in places for file in Path(each).glob("*.py")):
+                return ""
             return f"{parent} has no module {part}{did_you_mean(part, there, ALIKE)}"
         parent += f".{part}"
     return ""
@@ -114,7 +119,7 @@ def _places(package: str) -> list[str]:
                 None)
     if init is None:  # a namespace, or in a zip file
         return []
-    text = init.read_text("utf-8", "replace")
+    text = text_of(init)
     if relay := RELAY.search(text):
         return [os.path.join(place, package) for place in (*relay[1].split(";"), *sys.path)]
     return [] if FINDS_ITSELF.search(text) else folders
@@ -137,18 +142,29 @@ def _messages(package: str, kind: str) -> frozenset[str]:
     for folder in (Path(place, kind) for place in _places(package)):
         init = folder / "__init__.py"
         if init.is_file():
-            if not GENERATED.fullmatch(init.read_text("utf-8", "replace")):
+            if not GENERATED.fullmatch(text_of(init)):
                 return frozenset()
             known |= {path.stem[1:] + ending for path in folder.glob("_[!_]*.py")
                       for ending in ENDINGS[kind]}
     return frozenset(known)
 
 
-def workspace_of(folder: Path) -> tuple[Path, bool]:
-    """Where the modules of a package may be, and whether its folders are looked through."""
+def source_of(folder: Path) -> Source:
+    """Where the modules of a package may be, as far as its place tells: a workspace's src/."""
     if not (folder / "package.xml").is_file():
         return folder, False
-    return next((each for each in folder.parents if each.name == "src"), folder), True
+    sources = [each for each in folder.parents if each.name == "src"] or [folder]
+    # A cloned repository may have a src/ of its own.
+    return next((each for each in sources[::-1] if any(
+        (each.parent / name).exists() for name in OF_WORKSPACES)), sources[0]), True
+
+
+def text_of(path: Path) -> str:
+    """A file's text; none if it cannot be read, which must not end the check of others."""
+    try:
+        return path.read_text("utf-8", "replace")
+    except OSError:
+        return ""
 
 
 @cache
@@ -162,9 +178,9 @@ def _names_below(folder: Path, deep: bool) -> frozenset[str]:
             if name.endswith(SOURCES):
                 found.add(f"{stem}_pb2" if ending == "proto" else stem)
             elif name == "package.xml":
-                found.update(NAME.findall(Path(place, name).read_text("utf-8", "replace")))
+                found.update(NAME.findall(text_of(Path(place, name))))
             elif name == "CMakeLists.txt":
-                found.update(BUILT.findall(Path(place, name).read_text("utf-8", "replace")))
+                found.update(BUILT.findall(text_of(Path(place, name))))
     return frozenset(found)
 
 

@@ -3,12 +3,13 @@
 import ast
 import os
 import re
-from collections.abc import Iterable
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache, cached_property
 from pathlib import Path
 
-from workspace_needs.check.modules import NAME, walk, workspace_of
+from workspace_needs.check.modules import NAME, Source, source_of, text_of, walk
 from workspace_needs.check.python_files import LARGEST, Script, at_import, imports, read_script
 
 FOR_ROSRUN = ("scripts", "script", "nodes", "node", "bin")  # folders of a package
@@ -16,18 +17,23 @@ OTHERS = {"test", "tests", "doc", "docs", "template", "templates", "third_party"
 LONGEST = 256  # bytes that Linux reads of a first line
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 INSTALLS = r"\b{}\s*\(\s*PROGRAMS\b(.*?)(?:\bDESTINATION\b|\))"
+WORD = re.compile(rb"[\w\x80-\xff]+")  # in any encoding
 NODE = re.compile(r"<node\b[^>]*>")
 ATTRIBUTE = r"\b{}\s*=\s*[\"']([^\"']*)"
 
 
 class Package:
-    """What matters of the package that a script is in; each file is read once."""
+    """What matters of the package that a script is in; each file is read once.
 
-    def __init__(self, folder: Path):
+    `source`: where its workspace's modules are, if that is known.
+    """
+
+    def __init__(self, folder: Path, source: Source | None = None):
         self.folder = folder
+        self.source = source or source_of(folder)
         self.is_one = (folder / "package.xml").is_file()
         cmake = folder / "CMakeLists.txt"
-        text = re.sub("#.*", "", _text(cmake)) if cmake.is_file() else ""
+        text = re.sub("#.*", "", text_of(cmake)) if cmake.is_file() else ""
         self._relayed, self._installed = (
             {word.strip('"').rpartition("/")[2]
              for call in re.findall(INSTALLS.format(command), text, re.IGNORECASE | re.DOTALL)
@@ -63,9 +69,9 @@ class Package:
         """The programs of this package that its own launch files start."""
         if not self.is_one:
             return frozenset()
-        names = NAME.findall(_text(self.folder / "package.xml"))
+        names = NAME.findall(text_of(self.folder / "package.xml"))
         nodes = [node for path in self.folder.rglob("*.launch") if path.is_file()
-                 for node in NODE.findall(_text(path))]
+                 for node in NODE.findall(text_of(path))]
         return frozenset(kind for node in nodes for kind in _values("type", node)
                          if names[:1] == _values("pkg", node))
 
@@ -73,9 +79,8 @@ class Package:
         """Whether another file imports it; `certainly`: and not only perhaps."""
         name = path.parent.name if path.stem == "__init__" else path.stem
         return self.is_one and any(
-            name in _imported(other)[certainly]
-            for other, text in _scripts_below(workspace_of(self.folder)[0]).items()
-            if name.encode() in text and other != path)
+            other != path and name in _imported(other)[certainly]
+            for other in _naming(self.source[0]).get(name.encode(), ()))
 
 
 def first_line(path: Path) -> bytes:
@@ -101,14 +106,15 @@ def is_python(path: Path) -> bool:
 
 
 @cache
-def _scripts_below(folder: Path) -> dict[Path, bytes]:
-    """The text of each Python file."""
-    found = {}
+def _naming(folder: Path) -> Mapping[bytes, list[Path]]:
+    """The Python files that each word stands in."""
+    found = defaultdict(list)
     for place, _, files in walk(folder):
         for path in (Path(place, name) for name in files):
             if path.suffix in (".py", "") and os.path.isfile(path) and is_python(path):
                 with suppress(OSError), path.open("rb") as file:
-                    found[path] = file.read(LARGEST)
+                    for word in set(WORD.findall(file.read(LARGEST))):
+                        found[word].append(path)
     return found
 
 
@@ -125,10 +131,6 @@ def _imported(path: Path) -> tuple[frozenset[str], frozenset[str]]:
 def _words(nodes: Iterable[ast.AST]) -> frozenset[str]:
     return frozenset(word for module, name, _ in imports(nodes)
                      for word in (*module.split("."), name))
-
-
-def _text(path: Path) -> str:
-    return path.read_text("utf-8", "replace")
 
 
 def _values(attribute: str, node: str) -> list[str]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from workspace_needs.check.findings import ABSENT, UNCHECKED, Finding, problem
-from workspace_needs.check.modules import why_no_import
+from workspace_needs.check.modules import Source, why_no_import
 
 CODING = re.compile(rb"^[ \t\f]*#.*coding[:=]", re.MULTILINE)  # PEP 263
 LARGEST = 1 << 20  # bytes of a script that is read
@@ -62,10 +62,10 @@ def read_script(path: Path) -> Script:
     return Script(path, text, fault=problem(str(path), f"line {line}", why))
 
 
-def python_findings(script: Script, folder: Path, modules: bool) -> Iterator[Finding]:
-    """Findings about a script of the package in `folder`, as Python would meet them.
+def python_findings(script: Script, source: Source, modules: bool) -> Iterator[Finding]:
+    """Findings about a script, as Python would meet them.
 
-    `modules`: also about those that are absent.
+    `source`: where its package's modules are. `modules`: also about those that are absent.
     """
     if script.fault:
         yield script.fault
@@ -76,7 +76,7 @@ def python_findings(script: Script, folder: Path, modules: bool) -> Iterator[Fin
     places: dict[str, int] = {}  # the first of each
     nodes = (node for node in at_import(script.tree) if not getattr(node, "level", 0))
     for module, name, line in imports(nodes):
-        places.setdefault(why_no_import(module, name, script.path, folder), line)
+        places.setdefault(why_no_import(module, name, script.path, source), line)
     places.pop("", None)
     for why, line in places.items():
         yield Finding(str(script.path), f"line {line}", ABSENT, why)

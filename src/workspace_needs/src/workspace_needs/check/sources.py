@@ -45,13 +45,14 @@ TRANSPORTS = {"compressed": "compressed_image_transport", "theora": "theora_imag
 LARGEST = 1 << 20  # bytes of a source that is searched
 
 
-def program_findings(folder: Path, until: float = math.inf, where: str = "") -> Iterator[Finding]:
+def program_findings(folder: Path, until: float = math.inf, where: str = "",
+                     source: Path | None = None) -> Iterator[Finding]:
     """Findings about programs below `folder` that will not start, or end with an exception.
 
     Also about modules that others import; if all are fine, one with their number. `until`: a time
-    of time.monotonic(). `where`: that of the package.
+    of time.monotonic(). `where`: that of the package. `source`: the src/ of its workspace.
     """
-    package, number, fine = Package(folder), 0, True
+    package, number, fine = Package(folder, (source, True) if source else None), 0, True
     paths = (Path(place, name) for place, _, files in walk(folder) for name in files)
     for path in paths:
         if time.monotonic() > until:
@@ -132,7 +133,7 @@ def _script_findings(path: Path, package: Package, named: bool) -> Iterator[Find
     if not path.stat().st_size and (named or program) and path.name != "__init__.py":
         yield problem(str(path), FIRST, "it is empty, so that nothing starts")
     modules = program or (named and not package.is_other(path))
-    found = list(python_findings(script, package.folder, modules))
+    found = list(python_findings(script, package.source, modules))
     if found and (named or program or package.is_imported(path, certainly=True)):
         yield from found
 

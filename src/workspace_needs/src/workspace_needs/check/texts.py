@@ -14,9 +14,9 @@ from bullet_sim.formats.sdf.include import model_file
 from bullet_sim.formats.xml_text import decoded, read_bytes
 from bullet_sim.formats.xml_values import child_text, parse_xml, read_xml_file
 from bullet_sim_ros.interface import APPROXIMATED, WORKS, Row
-from workspace_needs.check.dry_run import LogLine, listening, try_model, try_world
+from workspace_needs.check.dry_run import LogLine, crowd, listening, try_model, try_world
 from workspace_needs.check.elements import Lookup
-from workspace_needs.check.findings import Finding, problem
+from workspace_needs.check.findings import UNCHECKED, Finding, problem
 from workspace_needs.check.parameter_commands import expanded
 
 NEEDS_MASS = "an <inertial>"  # the end of the error for a robot without any
@@ -67,14 +67,16 @@ class TextChecker:
         with listening() as captured:
             try:
                 description = load_entity(text, self._resources)
-                if isinstance(description, ModelDescription):
+                if isinstance(description, ModelDescription) and not (
+                        crowded := crowd([description])):
                     try_model(description, parameters, namespace)
             except SimulationError as error:
                 return [problem(where, "robot", error)]
         if not isinstance(description, ModelDescription):
             return [Finding(where, "light", WORKS), *self._details(text, where, None)]
         links = f"{len(description.links)} links, {len(description.joints)} joints"
-        return [Finding(where, f"model {description.name} ({links})", WORKS),
+        return [Finding(where, f"model {description.name} ({links})",
+                        UNCHECKED if crowded else WORKS, crowded),
                 *_not_failed(self._details(text, where, None), captured), *_logged(captured, where)]
 
     def world_file(self, path: Path, parameters: Mapping[str, object] | None = None
@@ -85,12 +87,14 @@ class TextChecker:
             try:
                 text = decoded(read_bytes(path))
                 description = load_world(path, self._resources)
-                try_world(description, parameters or {})
+                if not (crowded := crowd(description.models)):
+                    try_world(description, parameters or {})
             except (SimulationError, OSError) as error:
                 return [problem(where, "world", error)]
         name = f"world {description.name} ({len(description.models)} models)"
         details = _not_failed(self._details(text, where, path.parent), captured)
-        return [Finding(where, name, WORKS), *details, *_logged(captured, where)]
+        return [Finding(where, name, UNCHECKED if crowded else WORKS, crowded),
+                *details, *_logged(captured, where)]
 
     def _details(self, text: str, where: str, folder: Path | None) -> list[Finding]:
         """Findings about plugins and elements of the text in `folder`, and of included files."""

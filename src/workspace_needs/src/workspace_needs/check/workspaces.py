@@ -8,7 +8,7 @@ from pathlib import Path
 
 from workspace_needs.check.contents import Check, files_of
 from workspace_needs.check.findings import ABSENT, PROBLEM, SERIOUS, UNCHECKED, WORKS, Finding
-from workspace_needs.check.modules import workspace_of
+from workspace_needs.check.modules import source_of
 from workspace_needs.check.sources import program_findings
 from workspace_needs.verdicts import Verdict, judge
 from workspace_needs.workspace import WorkspaceError, source_folder
@@ -36,13 +36,13 @@ def workspace_findings(path: Path, arguments: list[str], run_commands: bool) -> 
     until = time.monotonic() + LONGEST
     return [finding for verdict in verdicts
             for finding in (*_of_package(verdict, path),
-                            *program_findings(verdict.folder, until, _where(verdict)),
+                            *program_findings(verdict.folder, until, _where(verdict), source),
                             *_of_files(verdict, files[verdict.name], check, until))]
 
 
 def package_findings(folder: Path, arguments: list[str], run_commands: bool) -> list[Finding]:
     """Findings about a package, built or not: as of its workspace, and about all that is in it."""
-    source, verdicts, found = workspace_of(folder)[0], [], []
+    source, verdicts, found = source_of(folder)[0], [], []
     try:
         if folder.parent.name != "share":  # installed, and so built
             verdicts = judge(source)

@@ -66,7 +66,8 @@ def assemble(model: ModelDescription) -> list[Tree]:
     """
     if model.static:
         return _welded_trees(model)
-    return [_jointed_tree(model, members) for members in _components(model)]
+    written = {joint.name: joint for joint in model.joints}
+    return [_jointed_tree(model, members, written) for members in _components(model)]
 
 
 def _components(model: ModelDescription) -> list[list[Member]]:
@@ -133,10 +134,10 @@ def loop_joints(model: ModelDescription, trees: list[Tree]) -> list[JointDescrip
         joint for joint in model.joints if joint.name not in carriers]
 
 
-def _jointed_tree(model: ModelDescription, members: list[Member]) -> Tree:
+def _jointed_tree(model: ModelDescription, members: list[Member],
+                  written: dict[str, JointDescription]) -> Tree:
     tree = Tree(self_collide=model.self_collide or any(link.self_collide for link, _ in members))
     frames: dict[str, Pose] = {}  # physics frame of each link in the model
-    written = {joint.name: joint for joint in model.joints}
     anchor = members[0][1]
     tree.kinematic = tree.fixed = members[0][0].kinematic and anchor is None
     if anchor is not None:
