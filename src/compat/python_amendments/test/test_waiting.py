@@ -259,14 +259,14 @@ def node(words, **environment):
 
 
 @pytest.mark.parametrize(("language", "line"), [
-    ("en", "No ROS master at {0}. Type roscore in another terminal, or start the course there: "
+    ("en", "No ROS master at {0}. Type {1} in another terminal, or start the course there: "
            "roslaunch learning_topic 0course.launch; this program then goes on by itself.\n"),
-    ("zh_CN", "{0} 上没有 ROS master。请在另一个终端里输入 roscore，或在那里启动跑道："
+    ("zh_CN", "{0} 上没有 ROS master。请在另一个终端里输入 {1}，或在那里启动跑道："
               "roslaunch learning_topic 0course.launch；这个程序会自己继续。\n")])
 def test_without_a_master_a_line_and_ctrl_c_ends_it_at_once(gone, language, line):
     waits = node("import rospy; rospy.init_node('lesson')", ROS_MASTER_URI=gone,
                  LC_ALL="C.UTF-8", LANGUAGE=language)
-    assert waits.stderr.readline() == line.format(gone)
+    assert waits.stderr.readline() == line.format(gone, f"roscore -p {gone.rpartition(':')[2].strip('/')}")
     waits.send_signal(signal.SIGINT)
     assert waits.communicate(timeout=3.0) == ("", "")  # rospy alone takes 5 s
     assert waits.returncode == 128 + signal.SIGINT
@@ -302,7 +302,7 @@ def test_a_master_with_an_address_of_ipv6_is_waited_for():
     said = waits.stderr.readline()
     waits.kill()
     waits.communicate()
-    assert said.startswith("No ROS master at http://[::1]:9. Type roscore")
+    assert said.startswith("No ROS master at http://[::1]:9. Type roscore -p 9 in")
 
 
 def test_at_pythons_prompt_ctrl_c_is_the_prompts(gone):

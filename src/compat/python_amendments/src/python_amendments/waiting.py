@@ -23,7 +23,7 @@ SIMULATOR = "gazebo"  # node name, in any namespace
 GRACE = 5.0  # s, wall: a node that ends together with its simulator says nothing
 OF_A_LAUNCH = "__log:="  # an argument of its nodes, which start before what they wait for
 LAUNCH_GRACE = 20.0  # s, wall
-NO_MASTER = ("No ROS master at %s. Type roscore in another terminal, or start the course there: "
+NO_MASTER = ("No ROS master at %s. Type %s in another terminal, or start the course there: "
              "%s; this program then goes on by itself.")
 NO_SIMULATOR = ("Nothing on %s yet: nobody publishes it, and no simulator runs. Start the course "
                 "in another terminal: %s; this program then goes on by itself.")
@@ -89,7 +89,7 @@ def wait_for_master():
         if hasattr(sys, "ps1"):
             raise rospy.exceptions.ROSInitException(translated(fault))
         sys.exit(translated(fault))
-    listening.wait_for_master(uri, translated(NO_MASTER % (uri, course())))
+    listening.wait_for_master(uri, translated(NO_MASTER % (uri, listening.roscore(uri), course())))
 
 
 def amend_services(services):

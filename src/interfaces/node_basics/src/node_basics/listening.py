@@ -10,6 +10,7 @@ ANSWER_TIME = 2.0  # s, wall, to connect
 LOOK_AGAIN = 0.2  # s, wall
 URI = re.compile(r"http://(?:[^/:]+|\[[\da-fA-F:.]+\]):([1-9]\d{0,4})/?")
 MOST = 65535  # of ports
+USUAL_PORT = 11311  # of roscore, if not told otherwise
 WRONG = "ROS_MASTER_URI is %s, and must be as http://localhost:11311"
 
 
@@ -17,6 +18,12 @@ def fault_of(uri: str) -> str:
     """What is wrong with a master's URI, in a line; empty: nothing."""
     found = URI.fullmatch(uri)
     return "" if found and int(found[1]) <= MOST else WRONG % uri
+
+
+def roscore(uri: str) -> str:
+    """The command that starts a master which is found at this URI."""
+    port = urlsplit(uri).port
+    return "roscore" if port == USUAL_PORT else f"roscore -p {port}"
 
 
 def listens(uri: str) -> bool:

@@ -12,7 +12,7 @@ from typing import NoReturn
 
 import rosgraph
 import rospy
-from node_basics.listening import fault_of, wait_for_master
+from node_basics.listening import fault_of, roscore, wait_for_master
 from rosgraph.names import is_legal_name
 
 from bullet_sim.errors import SimulationError
@@ -68,7 +68,7 @@ FASTEST = 1000.0  # largest real-time factor; 0 means no limit
 LATEST = 4e9  # s; ROS times end at 2**32 s
 MASTER_LOST = (ConnectionError, HTTPException)  # raised if the master ends during a call
 # As gazebo_ros_api_plugin.cpp, Load, says twice a second.
-NO_MASTER = "No ROS master - start roscore to continue... (looked for it at %s)"
+NO_MASTER = "No ROS master - start %s to continue... (looked for it at %s)"
 ENGINES = ("ode", "bullet", "dart", "simbody")  # those of Gazebo 11
 
 
@@ -176,7 +176,7 @@ def main() -> int:
                                   and unreadable_world(options.world)):
         print(f"[FATAL] {fault}", file=sys.stderr)
         return 1
-    wait_for_master(uri, f"[WARN] {NO_MASTER % uri}")
+    wait_for_master(uri, f"[WARN] {NO_MASTER % (roscore(uri), uri)}")
     send_promptly()
     keep_every_publisher()
     try:

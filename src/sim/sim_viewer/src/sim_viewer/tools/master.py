@@ -8,6 +8,7 @@ from typing import Any
 
 import rosgraph
 import rospy
+from node_basics.listening import roscore
 from roslib.message import get_message_class
 
 from sim_viewer.registry import Refused
@@ -73,8 +74,9 @@ def asked(ask: Callable[[], Any]) -> Any:
     try:
         return ask()
     except OSError as error:
-        raise Refused(f"the ROS master does not answer ({error.strerror or error}); "
-                      "start roscore or your launch file, and this page comes back") from None
+        raise Refused(f"the ROS master does not answer ({error.strerror or error}); start "
+                      f"{roscore(rosgraph.get_master_uri())} or your launch file, and this page "
+                      "comes back") from None
     except rosgraph.MasterException as error:
         raise Refused(f"the ROS master refused: {error}") from None
 
