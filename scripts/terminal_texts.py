@@ -107,18 +107,18 @@ OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off",
                "closed", "stalled", "time is up", "ended early",
                "subscribed to {0}", "advertised {0}", "made {0}", "not allowed", "not run",
                "fault", "preview: {0}", "next:", "{0} cm and {1}°", "{0}, scene {1}, seed {2}",
-               "kept", "driven", "{0} not reached", "goal {0} ({1}, {2})",
-               "way-point {0} ({1}, {2})")
+               "kept", "driven", "following", "waiting", "searching", "{0} not reached",
+               "goal {0} ({1}, {2})", "way-point {0} ({1}, {2})")
 # Of an exercise's findings, whose values may be a word.
 OF_FINDINGS = ("pass  {0}", "FAIL  {0}", "{0}, wanted {1}", "at least {0}", "at most {0}",
                "messages", "there", "missing", "drives", "stands", "{0} poses")
 # Of lists that a file's faults stand in, whose frame has one word.
-OF_LISTS = ("one of {0}", "controller {0}", "line {0}", "line {0}: {1}", "line {0}, column {1}",
-            "left out", "line {0}, column {1} (file {2})", "line {0}, column {1}: {2}",
-            "write &amp; for &", "write &gt; for >",
-            "it must be a whole number of pixels, 1 or more", "link of model {0}",
-            "joint of model {0}", "{0} when evaluating expression {1}", "map on {0}",
-            "laser scans on {0}", "there are: {0}", "is {0} meant?",
+OF_LISTS = ("one of {0}", "controller {0}", "File is not a zip file", "Ctrl-C ends.", "line {0}",
+            "line {0}: {1}", "line {0}, column {1}", "left out",
+            "line {0}, column {1} (file {2})", "line {0}, column {1}: {2}", "write &amp; for &",
+            "write &gt; for >", "it must be a whole number of pixels, 1 or more",
+            "link of model {0}", "joint of model {0}", "{0} when evaluating expression {1}",
+            "map on {0}", "laser scans on {0}", "there are: {0}", "is {0} meant?",
             'not yet: "{0}" passed to lookupTransform argument {1} does not exist.')
 # Of missing_headers.cmake.
 OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its place: {3}",

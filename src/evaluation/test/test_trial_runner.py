@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 import pytest
 
 from bullet_sim import __version__
-from evaluation.command_line import NOT_PASSED, NOT_RUN, PASSED
+from evaluation.command_line import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
 from evaluation.report import cell, table
 from evaluation.trial import Case, Trial, from_json, run_trial
 from run_session.failure import RunError
@@ -103,6 +103,20 @@ def test_what_was_tried_is_kept_and_resume_tries_the_rest(tmp_path, capsys):
     assert run_trial(rest, [*words, "--resume"]) == PASSED
     assert rest.tried == ["2", "3"] and names(tmp_path) == ["0", "1", "2", "3"]
     assert "[3/4]" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("at", "says"), [
+    ("2", "2 of 4 cases are done; --resume goes on with the others\n"), ("0", "")])
+def test_ctrl_c_says_how_to_go_on(tmp_path, capsys, at, says):
+    class Interrupted(Squares):
+        def judge(self, record):
+            if record == at:
+                raise KeyboardInterrupt
+            return super().judge(record)
+
+    words = ["--numbers", "4", "--out", str(tmp_path)]
+    assert run_trial(Interrupted(), words) == INTERRUPTED
+    assert capsys.readouterr().err == f"{says}squares: interrupted; all processes ended\n"
 
 
 @pytest.mark.parametrize(("words", "said"), [

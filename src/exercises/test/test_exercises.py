@@ -155,6 +155,15 @@ def test_a_loop_without_end_is_one_line(tmp_path):
                            " end?\n")
 
 
+def test_a_check_that_takes_long_says_so(tmp_path):
+    (tmp_path / "mine.py").write_text("while True:\n    pass\n", encoding="utf-8")
+    code = "import sys, exercises.main as m; m.LONG, m.LIMIT = 0.5, 2; sys.exit(m.run())"
+    done = subprocess.run([sys.executable, "-c", code, "white_line", str(tmp_path / "mine.py")],
+                          capture_output=True, text=True, timeout=60)
+    assert done.stderr.startswith("check_exercise: not done after 0.5 s, and ends after 2 s at the"
+                                  " latest; does a loop of the program never end? Ctrl-C")
+
+
 def hinge(joint, pid):
     """A controllers' file."""
     return f"racecar: {{left: {{type: a/JointPositionController, joint: {joint}, pid: {pid}}}}}"

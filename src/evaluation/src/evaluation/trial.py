@@ -6,6 +6,7 @@ import argparse
 import contextlib
 import importlib
 import json
+import sys
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, fields, is_dataclass
@@ -207,6 +208,11 @@ def _run_cases(trial: Trial, options: argparse.Namespace, arguments: Sequence[st
             _try_elsewhere(tally, trial, options, arguments)
         else:
             _try_here(tally, trial, options.out)
+    except KeyboardInterrupt:
+        if tally.results:
+            print(f"{len(tally.results)} of {len(tally.cases)} cases are done; "
+                  f"{trial.named('resume')} goes on with the others", file=sys.stderr)
+        raise
     finally:
         if tally.results:  # finished cases are kept, however the run ended
             _show(trial, tally, options.out)

@@ -7,6 +7,7 @@ import importlib
 import os
 import signal
 import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -23,6 +24,7 @@ from run_session.failure import RunError
 
 PASSED, FAILED, COULD_NOT, INTERRUPTED = 0, 1, 2, 130
 LIMIT = 300  # s, wall: of one check
+LONG = 15.0  # s, wall, after which a check says that it goes on
 EPILOG = "Exit code 0: passed; 1: failed; 2: could not be checked; 130: interrupted."
 
 
@@ -30,6 +32,9 @@ def run() -> int:
     """`main` for a terminal: Ctrl-C and the time limit end a check that hangs."""
     signal.signal(signal.SIGALRM, _give_up)
     signal.alarm(LIMIT)
+    waiting = threading.Timer(LONG, _still_checking)
+    waiting.daemon = True
+    waiting.start()
     try:
         with interruptible():
             return main()
@@ -39,6 +44,8 @@ def run() -> int:
         return COULD_NOT
     except KeyboardInterrupt:
         return INTERRUPTED
+    finally:
+        waiting.cancel()
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -87,7 +94,7 @@ def check(exercise: Exercise, file: Path | None = None) -> int:
     file = file or exercise.start
     if not file.is_file():
         raise CannotCheck(f"{file}: no such file; leave FILE out to check {exercise.start}")
-    print(f"{title(exercise)}  ({shown(file)})")
+    print(f"{title(exercise)}  ({shown(file)})", flush=True)
     failed, count = 0, 0
     try:
         for finding in findings(exercise, file):
@@ -125,6 +132,11 @@ def shown(path: Path) -> str:
     if folder and path.resolve().is_relative_to(folder.resolve()):
         return f"{package}/{path.resolve().relative_to(folder.resolve())}"
     return str(path)
+
+
+def _still_checking() -> None:
+    print(f"check_exercise: not done after {LONG:g} s, and ends after {LIMIT} s at the latest; "
+          "does a loop of the program never end? Ctrl-C ends it now", file=sys.stderr)
 
 
 def _give_up(_number: int, _frame: object) -> None:

@@ -48,8 +48,8 @@ def available() -> Kind:
         who, way = (("root", "") if kind is Kind.ROOT else
                     ("this user", "as root it may be: sudo make mark SUBMISSIONS=DIR; "))
         raise RunError(f"no sandbox: this machine allows {who} no namespaces ({why[0]}); {way}in "
-                       "Docker give --privileged; scripts/mark.sh --no-sandbox runs submissions "
-                       "unprotected")
+                       "Docker give --privileged; scripts/mark.sh --no-sandbox --submissions DIR "
+                       "runs them unprotected")
     return kind
 
 
