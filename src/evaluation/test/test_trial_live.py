@@ -1,6 +1,9 @@
 """A single drive, with nothing that drives: what is kept when it is interrupted."""
 
 import errno
+import os
+import subprocess
+import sys
 from argparse import Namespace
 from types import SimpleNamespace
 from typing import ClassVar
@@ -8,7 +11,7 @@ from typing import ClassVar
 import pytest
 
 from evaluation import live
-from evaluation.command_line import run_program
+from evaluation.command_line import results_folder, run_program
 
 
 class FakeDrive(live.LiveDrive):
@@ -105,3 +108,26 @@ def test_a_full_disk_is_one_line_and_the_film_is_closed_too(tmp_path, monkeypatc
     disk = next(each for each in (tmp_path, *tmp_path.parents) if each.is_mount())
     assert said == (f"drive: no space left on {disk} for {tmp_path / 'report.json'}: make room, "
                     "or give a folder elsewhere: scripts/drive.sh --out DIR\n")
+
+
+def test_a_folder_that_another_run_writes_is_refused_until_its_process_has_died(
+        tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(live, "Session", Whole)
+    drive, made = FakeDrive(tmp_path / "out"), tmp_path / "out" / "report.json"
+    with results_folder("drive", drive.out):
+        made.touch()
+        assert run_program("drive", lambda: live.run_live(drive)) == 2
+    assert made.exists() and drive.reports == []
+    assert capsys.readouterr().err == (
+        f"drive: {drive.out} is being written by another run (PID {os.getpid()}): end it, or give "
+        "a folder elsewhere: scripts/drive.sh --out DIR\n")
+    holds = subprocess.Popen(
+        [sys.executable, "-c", "import sys, pathlib\nfrom evaluation.command_line import *\n"
+         "with results_folder('a', pathlib.Path(sys.argv[1])): print(flush=True); input()",
+         str(drive.out)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    holds.stdout.readline()
+    assert run_program("drive", lambda: live.run_live(drive)) == 2
+    assert f"(PID {holds.pid})" in capsys.readouterr().err
+    holds.kill()
+    holds.communicate()
+    assert run_program("drive", lambda: live.run_live(drive)) == 0

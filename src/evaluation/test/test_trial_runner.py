@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 import pytest
 
 from bullet_sim import __version__
-from evaluation.command_line import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED
+from evaluation.command_line import INTERRUPTED, NOT_PASSED, NOT_RUN, PASSED, results_folder
 from evaluation.report import cell, table
 from evaluation.trial import Case, Trial, from_json, run_trial
 from run_session.failure import RunError
@@ -185,3 +185,11 @@ def test_the_program_and_its_report_say_the_version(tmp_path, capsys):
     assert capsys.readouterr().out == f"squares.py {__version__}\n"
     run_trial(Squares(), ["--out", str(tmp_path)])
     assert json.loads((tmp_path / "report.json").read_text())["version"] == __version__
+
+
+def test_a_folder_that_another_run_writes_is_refused(tmp_path, capsys):
+    trial = Squares()
+    with results_folder("squares", tmp_path):
+        assert run_trial(trial, ["--out", str(tmp_path)]) == NOT_RUN
+    assert trial.tried == [] and "is being written by another run" in capsys.readouterr().err
+    assert run_trial(trial, ["--out", str(tmp_path)]) == PASSED

@@ -9,6 +9,7 @@ import sys
 import threading
 from pathlib import Path
 from types import SimpleNamespace
+from urllib.parse import urlsplit
 
 import pytest
 import rosgraph
@@ -266,7 +267,7 @@ def node(words, **environment):
 def test_without_a_master_a_line_and_ctrl_c_ends_it_at_once(gone, language, line):
     waits = node("import rospy; rospy.init_node('lesson')", ROS_MASTER_URI=gone,
                  LC_ALL="C.UTF-8", LANGUAGE=language)
-    assert waits.stderr.readline() == line.format(gone, f"roscore -p {gone.rpartition(':')[2].strip('/')}")
+    assert waits.stderr.readline() == line.format(gone, f"roscore -p {urlsplit(gone).port}")
     waits.send_signal(signal.SIGINT)
     assert waits.communicate(timeout=3.0) == ("", "")  # rospy alone takes 5 s
     assert waits.returncode == 128 + signal.SIGINT

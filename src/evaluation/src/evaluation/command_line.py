@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import errno
+import fcntl
+import os
 import re
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -124,6 +127,40 @@ def run_program(name: str, work: Callable[[], int]) -> int:
     except KeyboardInterrupt:
         print(f"{name}: interrupted; all processes ended", file=sys.stderr)
         return INTERRUPTED
+
+
+@contextlib.contextmanager
+def results_folder(program: str, out: Path) -> Iterator[None]:
+    """Makes the folder; of several runs, one is in here at a time: RunError for the others.
+
+    The kernel releases the lock when its process dies.
+    """
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        lock = os.open(out, os.O_DIRECTORY)
+    except OSError as error:
+        if error.errno in SAID:
+            raise
+        raise RunError(f"{option_of(program, 'out')} {out}: {error.strerror}") from error
+    try:
+        with contextlib.suppress(OSError):  # a network's file system, which cannot lock folders
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise RunError(
+                    f"{out} is being written by another run (PID {_writer(lock)}): end it, or "
+                    f"give a folder elsewhere: {elsewhere(program)}") from None
+        yield
+    finally:
+        os.close(lock)
+
+
+def _writer(folder: int) -> str:
+    """The process that has locked this open folder; "?": it has just ended."""
+    node = str(os.fstat(folder).st_ino)
+    locks = [line.split() for line in Path("/proc/locks").read_text(encoding="ascii").splitlines()]
+    return next((words[4] for words in locks
+                 if words[1] == "FLOCK" and words[5].rpartition(":")[2] == node), "?")
 
 
 def complain(name: str, failure: Exception) -> None:

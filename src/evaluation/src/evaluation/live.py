@@ -14,7 +14,14 @@ from node_basics.ending import interruptible
 from sim_viewer.replay_page import Curve
 from terminal_language import translated
 
-from evaluation.command_line import NOT_PASSED, PASSED, SAID, Parser, run_program
+from evaluation.command_line import (
+    NOT_PASSED,
+    PASSED,
+    SAID,
+    Parser,
+    results_folder,
+    run_program,
+)
 from evaluation.film import FilmFile
 from evaluation.lap import LapScorer, Sample, fingerprint
 from evaluation.run_page import RECORDING, RUN_PAGE, begin_recording, write_run_page
@@ -128,7 +135,12 @@ def run_program_of(kind: type[LiveDrive], arguments: Sequence[str]) -> int:
 
 def run_live(drive: LiveDrive) -> int:
     """Run from start to end; returns the exit code, or raises the exception that ended it early."""
-    _make_room(drive)
+    with results_folder(drive.program, drive.out):
+        _make_room(drive)
+        return _run(drive)
+
+
+def _run(drive: LiveDrive) -> int:
     early, outcome = None, Outcome("ended early", "interrupted")
     try:
         with Session(drive.out) as session:
@@ -206,7 +218,6 @@ def _make_room(drive: LiveDrive) -> None:
     """Move the previous run's results to EARLIER, so that the folder holds only this run's."""
     earlier = drive.out / EARLIER
     try:
-        drive.out.mkdir(parents=True, exist_ok=True)
         owned = (drive.out / name for name in drive.writes if name not in drive.stay)
         for path in filter(Path.exists, owned):
             earlier.mkdir(exist_ok=True)

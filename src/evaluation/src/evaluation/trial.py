@@ -17,10 +17,10 @@ from typing import Any, ClassVar, get_args, get_origin, get_type_hints
 from evaluation.command_line import (
     NOT_PASSED,
     PASSED,
-    SAID,
     Parser,
     complain,
     option_of,
+    results_folder,
     run_program,
 )
 from evaluation.report import write_json, write_page
@@ -188,16 +188,15 @@ def from_json(kind: Any, value: Any) -> Any:
 
 def run_trial(trial: Trial, arguments: Sequence[str]) -> int:
     """Run the command line; returns the exit code."""
-    return run_program(trial.program, lambda: _run_cases(trial, trial.parse(arguments), arguments))
+    def work() -> int:
+        options = trial.parse(arguments)
+        with results_folder(trial.program, options.out):
+            return _run_cases(trial, options, arguments)
+
+    return run_program(trial.program, work)
 
 
 def _run_cases(trial: Trial, options: argparse.Namespace, arguments: Sequence[str]) -> int:
-    try:
-        options.out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        if error.errno in SAID:
-            raise
-        raise RunError(f"{trial.named('out')} {options.out}: {error.strerror}") from error
     check_space(options.out)
     _, why_not_callers = own_port()
     if why_not_callers:
