@@ -234,9 +234,14 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> FileCollec
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> object:
-    """pytest's hook: a Python file that runs on its own is not imported here."""
+    """pytest's hook: a Python file that runs on its own is not imported here.
+
+    Any other may import what lies beside it.
+    """
     if parent.config.getoption("own_process"):
         return FileCollector.from_parent(parent, path=module_path)
+    if (beside := str(module_path.parent)) not in sys.path:
+        sys.path.insert(0, beside)
     return None
 
 

@@ -2,13 +2,10 @@
 
 import importlib.util
 import pathlib
-import sys
 
 import pytest
 
-HERE = pathlib.Path(__file__).resolve().parent
-SCRIPTS = HERE.parent / "scripts"
-sys.path.insert(0, str(HERE))
+SCRIPTS = pathlib.Path(__file__).resolve().parents[1] / "scripts"
 
 
 @pytest.fixture(scope="session")

@@ -1,14 +1,9 @@
-"""Lets the tests import prop_models.py, rigs.py and snapshots.py; a world, and a renderer."""
-
-import sys
-from pathlib import Path
+"""A world, and a renderer."""
 
 import pytest
 
 from bullet_sim.rendering.egl import EglRenderer
 from bullet_sim.world import World
-
-sys.path.insert(0, str(Path(__file__).parent))
 
 
 @pytest.fixture

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import socket
-import sys
-from pathlib import Path
 
 import aiohttp
 import pytest
@@ -13,8 +11,6 @@ from sim_viewer import registry
 from sim_viewer.options import Options
 from sim_viewer.registry import Node
 from sim_viewer.server import Server
-
-sys.path.insert(0, str(Path(__file__).parent))
 
 LIMIT = 120.0  # s that a story may take
 
