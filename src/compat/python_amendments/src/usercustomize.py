@@ -21,7 +21,7 @@ AMENDMENTS = {
     "joint_state_publisher": ["old_names.amend_joint_state_publisher"],
     "numpy": ["old_names.amend_numpy"],
     "roslaunch.loader": ["launch_end.amend_loader"],
-    "roslaunch.pmon": ["launch_nohup.amend"],
+    "roslaunch.pmon": ["launch_end.amend_signals"],
     "rospy.client": ["waiting.amend_client"],
     "rospy.impl.tcpros_service": ["waiting.amend_services"],
     "rospy.topics": ["waiting.amend_topics"],

@@ -1,7 +1,8 @@
-"""roslaunch ends by a refusal of our programs alone, or by Ctrl-C; other faults stay its own."""
+"""roslaunch ends by a refusal of our programs alone, by Ctrl-C, or by SIGHUP unless with nohup."""
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -78,3 +79,47 @@ def test_many_packages_are_read_in_one_process(tmp_path, monkeypatch):
 def test_every_program_reads_them_so():
     asks = "import catkin_pkg.packages as p; print(type(p.multiprocessing).__name__)"
     assert subprocess.check_output([sys.executable, "-c", asks], text=True) == "SimpleNamespace\n"
+
+
+GOES_ON = 3.0  # s
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("localhost", 0))
+        return str(probe.getsockname()[1])
+
+
+@pytest.fixture(params=[(), ("nohup",)], ids=["by_hand", "nohup"])
+def nohup(request):
+    return request.param
+
+
+@pytest.fixture
+def launched(nohup, tmp_path):
+    """A roslaunch whose node has started."""
+    begun, launch = tmp_path / "begun", tmp_path / "one.launch"
+    prefix = f"sh -c 'touch {begun}; exec sleep 300'"
+    launch.write_text(f'<launch><node name="a" pkg="rosout" type="rosout" '
+                      f'launch-prefix="{prefix}"/></launch>', encoding="utf-8")
+    process = subprocess.Popen(
+        [*nohup, "roslaunch", "-p", free_port(), launch], stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
+        env=os.environ | {"ROS_HOSTNAME": "localhost"})
+    try:
+        end = time.monotonic() + LIMIT
+        while not begun.exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        yield process
+    finally:
+        process.terminate()
+        process.wait(LIMIT)
+
+
+def test_only_with_nohup_it_outlives_its_terminal(launched, nohup):
+    launched.send_signal(signal.SIGHUP)
+    if nohup:
+        with pytest.raises(subprocess.TimeoutExpired):
+            launched.wait(GOES_ON)
+    else:
+        launched.wait(LIMIT)

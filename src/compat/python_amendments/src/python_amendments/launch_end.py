@@ -1,5 +1,6 @@
-"""Ends a roslaunch at once: by the one line of a program of ours that refuses it, or by Ctrl-C."""
+"""What ends a roslaunch: at once, a refusal of ours or Ctrl-C; not a SIGHUP that nohup ignores."""
 
+import signal
 from types import SimpleNamespace
 
 from node_basics.refusing import REFUSED
@@ -34,3 +35,12 @@ def amend_packages(packages):
         raise OSError  # as where there can be none; it reads one after the other then
 
     packages.multiprocessing = SimpleNamespace(Pool=no_pool)
+
+
+def amend_signals(pmon):
+    """Let `nohup roslaunch` go on when its terminal closes; `pmon` is the module roslaunch.pmon.
+
+    roslaunch itself would take back SIGHUP, which is ignored at its start then, and end.
+    """
+    if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        pmon._signal_list.remove(signal.SIGHUP)
