@@ -19,7 +19,7 @@ USUAL = 100  # of each other target: about a minute of processor time in all
 
 @pytest.fixture(scope="module")
 def fuzz(modules):
-    return modules("fuzz", "campaign", "forms", "maps", "targets")
+    return modules("fuzz", "campaign", "page", "pictures", "targets")
 
 
 @pytest.mark.parametrize("name", [
@@ -37,8 +37,8 @@ def test_spoilt_input_is_taken_or_refused_by_one_line(fuzz, tmp_path, name):
     assert not report.findings, "\n".join(report.findings.values())
 
 
-def test_good_requests_are_answered(modules):
-    page = modules("fuzz", "page")["page"]
+def test_good_requests_are_answered(fuzz):
+    page = fuzz["page"]
     for request in page.REQUESTS:
         assert asyncio.run(page._exchange(request)).startswith(b"HTTP/1.1 "), request
 
@@ -50,12 +50,12 @@ def test_every_target_has_its_turn_here(fuzz):
 
 
 def test_every_form_and_map_is_read_before_it_is_spoilt(fuzz):
-    forms, maps = fuzz["forms"], fuzz["maps"]
-    for kind in forms.KINDS:
-        assert forms.kind_of(forms.template(kind)) is kind
+    page, pictures = fuzz["page"], fuzz["pictures"]
+    for kind in page.KINDS:
+        assert page.kind_of(page.template(kind)) is kind
     beside = {path.name for path in fuzz["targets"].TARGETS["map"].beside}
-    for path in maps.found("**/maps/*.yaml", "**/map/*.yaml"):
-        assert maps.read_map(path) and path.with_suffix(".pgm").name in beside
+    for path in pictures.found("**/maps/*.yaml", "**/map/*.yaml"):
+        assert pictures.read_map(path) and path.with_suffix(".pgm").name in beside
 
 
 @pytest.mark.parametrize("read, fault", [

@@ -1,14 +1,16 @@
-"""Robots, worlds and materials: URDF, SDF, xacro, OGRE."""
+"""Robots, worlds, materials and meshes: URDF, SDF, xacro, OGRE; STL, OBJ, COLLADA."""
 
 from __future__ import annotations
 
+import struct
 from functools import cache
 from pathlib import Path
 
-from mutating import TEXT, XML_TEXT, spoilt
+import scipy.spatial  # noqa: F401 (in memory before that is bounded: levels() takes it)
+from mutating import BINARY, TEXT, XML_TEXT, spoilt
 from target import ROOT, Target, found
 
-from bullet_sim.description import WorldDescription
+from bullet_sim.description import Mesh, WorldDescription
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats.loading import load_model, load_world
 from bullet_sim.formats.ogre import parse_script
@@ -18,6 +20,8 @@ from bullet_sim.formats.source import Source
 from bullet_sim.formats.xacro.bounds import run_bounded
 from bullet_sim.formats.xacro.files import expand
 from bullet_sim.formats.xml_text import decoded, read_bytes
+from bullet_sim.meshes.detail import levels
+from bullet_sim.meshes.loading import collision_mesh, load_mesh
 from bullet_sim.world import World
 
 STEPS = 3
@@ -74,6 +78,19 @@ def read_script(path: Path) -> None:
         find_material(name, [str(path)], source, "fuzz")
 
 
+TEXT_STL = (b"solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+            b"endloop\nendfacet\nendsolid s\n")
+LYING_STL = b"\0" * 80 + struct.pack("<I", 2**32 - 1) + b"\0" * 50
+OBJ = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl a\nf 1/1/1 2/1/1 3/1/1\n"
+
+
+def read_mesh(path: Path) -> None:
+    """As it is drawn, near and far away, and as it collides."""
+    for part in load_mesh(Mesh(str(path))):
+        levels(part, fewest=1)
+    collision_mesh(Mesh(str(path)))
+
+
 TARGETS = (
     Target("urdf", "robot.urdf", spoilt(found("**/urdf/*.urdf", "**/styles/*.urdf"), XML_TEXT),
            spawn_model, (SimulationError,)),
@@ -87,5 +104,11 @@ TARGETS = (
            spoilt(found("**/urdf/*.xacro", "**/controllers/*.xacro", "**/styles/*.xacro"),
                   XML_TEXT), expand_xacro, (SimulationError,)),
     Target("ogre", "input.material", spoilt(found("**/*.material"), TEXT), read_script,
+           (SimulationError,)),
+    Target("stl", "input.stl", spoilt([*found("**/*.stl", largest=20_000), TEXT_STL, LYING_STL],
+                                      BINARY + TEXT), read_mesh, (SimulationError,)),
+    Target("obj", "input.obj", spoilt([*found("**/*.obj", largest=20_000), OBJ], TEXT),
+           read_mesh, (SimulationError,), tuple(found("**/meshes/*.mtl"))),
+    Target("collada", "input.dae", spoilt(found("**/*.dae"), XML_TEXT + TEXT), read_mesh,
            (SimulationError,)),
 )

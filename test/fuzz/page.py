@@ -1,9 +1,10 @@
-"""What a browser may send to the page's server: HTTP and WebSocket messages."""
+"""What a browser may send to the page's server: HTTP, WebSocket messages, filled-in forms."""
 
 from __future__ import annotations
 
 import asyncio
 import inspect
+import io
 import json
 import os
 import random
@@ -13,12 +14,15 @@ from pathlib import Path
 from typing import Any
 from unittest import mock
 
+from gazebo_msgs.srv import SetModelState, SetPhysicsProperties, SpawnModel
 from mutating import BINARY, TEXT, WORDS, spoilt
+from sensor_msgs.msg import Joy, LaserScan
 from sim_viewer import hub, registry
 from sim_viewer.options import Options
 from sim_viewer.page_scene import Meshes
-from sim_viewer.registry import Context, Node
+from sim_viewer.registry import Context, Node, Refused
 from sim_viewer.server import Server
+from sim_viewer.tools.messages import fill, template
 from target import Target
 
 from bullet_sim_ros.without_master import without_master
@@ -135,7 +139,26 @@ REQUESTS = [b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n",
             UPGRADE + b"\r\n" + frame(1, b'{"id":1,')[:1].replace(b"\x81", b"\x01")
             + frame(1, b'{"id":1,')[1:] + frame(0, b'"op":"about"}')]
 
+
+KINDS = (SpawnModel._request_class, SetModelState._request_class,
+         SetPhysicsProperties._request_class, LaserScan, Joy)
+
+
+def fill_in(path: Path) -> None:
+    """A form of the kind that takes it, and the message as it would be sent."""
+    text = path.read_text("utf-8", errors="replace")
+    fill(kind_of(text), text).serialize(io.BytesIO())
+
+
+def kind_of(text: str) -> type:
+    """The kind of which the text has the most fields, for how many there are."""
+    return max(KINDS, key=lambda kind: sum(
+        f"{name}:" in text for name in kind.__slots__) / len(kind.__slots__))
+
+
 TARGETS = (
     Target("page", "message.json", spoilt(_messages(), (value_put,) * 6 + TEXT), ask, ()),
     Target("http", "request", spoilt(REQUESTS, TEXT + BINARY), request, ()),
+    Target("form", "form.yaml", spoilt([template(kind).encode() for kind in KINDS], TEXT), fill_in,
+           (Refused,)),
 )

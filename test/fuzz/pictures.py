@@ -1,4 +1,4 @@
-"""Images: as a model's texture or shape, as a map's image, as a drawing of a track."""
+"""Maps and drawings of tracks: images, also a model's texture or shape, and YAML."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ import numpy as np
 from mutating import BINARY, TEXT, spoilt
 from racecar_description.track.drawing import Fault, find_mid_line, read_picture
 from racecar_description.track.errors import TrackError
-from target import Target
+from racecar_description.track.track_file import load_centre_line
+from target import Target, found
 
 from bullet_sim.description import Heightmap, ImageExtrusion
 from bullet_sim.errors import SimulationError
@@ -21,6 +22,7 @@ from bullet_sim.meshes.generated import heightmap_parts, image_part
 from bullet_sim.meshes.images import PNG, load_image, warn_if_unreadable
 from map_server.errors import MapFileError
 from map_server.image import read_image
+from map_server.map_files import read_map
 
 GREY = np.indices((64, 80)).sum(axis=0).astype(np.uint8)
 GREY[20:40, 20:60] = 0
@@ -59,8 +61,19 @@ def read_drawing(path: Path) -> None:
 
 
 IMAGES = spoilt(FILES, (*BINARY, *TEXT[:1], sealed, sealed, sealed))
+
+
+ALIASES = b"a: &a [1]\n" + b"".join(
+    b"%c: &%c [%s]\n" % (98 + n, 98 + n, b", ".join([b"*%c" % (97 + n)] * 9)) for n in range(9)
+) + b"image: *j\nresolution: *j\norigin: *j\nname: *j\n"
+
 TARGETS = (
     Target("texture", "input.png", IMAGES, use_texture, (SimulationError,)),
     Target("map_image", "input.pgm", IMAGES, read_image, (MapFileError,)),
     Target("drawing", "input.png", IMAGES, read_drawing, (TrackError,)),
+    Target("map", "input.yaml", spoilt([*found("**/maps/*.yaml", "**/map/*.yaml"), ALIASES], TEXT),
+           read_map, (MapFileError,),
+           tuple(found("**/map/*.pgm", "**/maps/*.pgm", largest=1_000_000))),
+    Target("track", "input.yaml", spoilt([*found("**/tracks/*.yaml"), ALIASES], TEXT),
+           load_centre_line, (TrackError,)),
 )

@@ -2,9 +2,6 @@
 
 import bags
 import formats
-import forms
-import maps
-import meshes
 import networks
 import nodes
 import page
@@ -12,6 +9,5 @@ import pictures
 import simulator
 
 TARGETS = {target.name: target
-           for family in (formats, meshes, maps, pictures, networks, bags, forms, page, simulator,
-                          nodes)
+           for family in (formats, pictures, networks, bags, page, simulator, nodes)
            for target in family.TARGETS}
