@@ -175,6 +175,26 @@ def test_a_module_is_read_if_another_needs_it(tmp_path):
     assert [Path(each.where).name for each in program_findings(tmp_path)] == ["a.py"]
 
 
+@pytest.mark.parametrize("name", ["scripts/syn.py", "nodes/syn.py", "bin/more/syn.py"])
+@pytest.mark.parametrize("first, mode", [("", 0o644), ("", 0o755), (NODE[:23], 0o644)])
+@pytest.mark.parametrize("body", ["def f(:\n", "print 'hello'\n"])
+def test_a_script_that_python_cannot_read_is_named(tmp_path, name, first, mode, body):
+    add_files(tmp_path, {name: first + body, "scripts/a.py": NODE})
+    (tmp_path / name).chmod(mode)
+    found, = program_findings(tmp_path)
+    assert found in script_findings(tmp_path / name) and found.status == PROBLEM
+    add_files(tmp_path, {"src/arm/b.py": "print 'after syn'\n"})  # its words are no imports
+    assert program_findings(tmp_path) == [found]
+
+
+def test_a_file_whose_faults_are_not_named_is_not_said_to_work(tmp_path):
+    add_files(tmp_path, {"src/arm/of_python_2.py": "print 1\n"})
+    assert list(sources.program_findings(tmp_path)) == []
+    add_files(tmp_path, {"scripts/a.py": NODE})
+    found, = sources.program_findings(tmp_path)
+    assert found.part == "scripts and C++ files (1)"
+
+
 def test_the_error_of_one_script_ends_nothing(node, monkeypatch):
     def fail(*_):
         raise KeyError("x")

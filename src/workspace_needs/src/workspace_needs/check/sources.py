@@ -8,6 +8,7 @@ import shlex
 import shutil
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import rospkg
@@ -43,6 +44,7 @@ HINTS = re.compile(rb"\bTransportHints\b[^;\n\"]{0,200}\(\s{0,200}\"(\w+)\"")
 TRANSPORTS = {"compressed": "compressed_image_transport", "theora": "theora_image_transport",
               "compressedDepth": "compressed_depth_image_transport"}
 LARGEST = 1 << 20  # bytes of a source that is searched
+SILENT = "silent"  # the status of faults in what perhaps nobody starts or imports
 
 
 def program_findings(folder: Path, until: float = math.inf, where: str = "",
@@ -60,7 +62,8 @@ def program_findings(folder: Path, until: float = math.inf, where: str = "",
                           f"the time is over; {path.name} and those after it are not read")
             return
         if not os.path.isfile(path) or not FILE_NAME.fullmatch(path.name) or (  # a pipe blocks
-                package.is_other(path) and not _is_for_rosrun(path, folder)):
+                package.is_other(path)
+                and not (_is_for_rosrun(path, package) and os.access(path, os.X_OK))):
             continue
         if path.suffix in SOURCES:
             found = list(transport_findings(path))
@@ -68,15 +71,15 @@ def program_findings(folder: Path, until: float = math.inf, where: str = "",
             found = list(script_findings(path, package))
         else:
             continue
-        yield from found
-        number += 1
+        yield from (each for each in found if each.status != SILENT)
+        number += not any(each.status == SILENT for each in found)
         fine = fine and not any(each.status in (*SERIOUS, UNCHECKED) for each in found)
     if number and fine:
         yield Finding(where or str(folder), f"scripts and C++ files ({number})", WORKS)
 
 
-def _is_for_rosrun(path: Path, folder: Path) -> bool:
-    return os.access(path, os.X_OK) and path.relative_to(folder).parts[0] in FOR_ROSRUN
+def _is_for_rosrun(path: Path, package: Package) -> bool:
+    return path.relative_to(package.folder).parts[0] in FOR_ROSRUN
 
 
 def transport_findings(path: Path) -> Iterator[Finding]:
@@ -105,7 +108,8 @@ def _is_here(package: str) -> bool:
 def script_findings(path: Path, package: Package | None = None) -> Iterator[Finding]:
     """Findings about a script: how it is started, and what Python says of it.
 
-    `package`: that it is in, given by those who did not name the script itself.
+    `package`: that it is in, given by those who did not name the script itself; some findings may
+    then be SILENT.
     """
     try:
         yield from list(_script_findings(path, package or Package(_package_of(path)),
@@ -134,8 +138,10 @@ def _script_findings(path: Path, package: Package, named: bool) -> Iterator[Find
         yield problem(str(path), FIRST, "it is empty, so that nothing starts")
     modules = program or (named and not package.is_other(path))
     found = list(python_findings(script, package.source, modules))
-    if found and (named or program or package.is_imported(path, certainly=True)):
-        yield from found
+    if found and not (named or program or _is_for_rosrun(path, package)
+                      or package.is_imported(path, certainly=True)):
+        found = [replace(each, status=SILENT) for each in found]
+    yield from found
 
 
 def holds_python(path: Path) -> bool:
