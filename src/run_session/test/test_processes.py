@@ -1,4 +1,4 @@
-"""A child that is ended takes all with it that it started."""
+"""Runs that begin together take turns; a child that is ended takes all with it that it started."""
 
 import os
 import subprocess
@@ -7,6 +7,8 @@ import time
 import psutil
 import pytest
 
+from run_session.failure import RunError
+from run_session.master import take_turn
 from run_session.processes import Family, end_with_parent, strip_terminal_codes
 
 pytestmark = pytest.mark.processes
@@ -34,3 +36,21 @@ def test_a_program_whose_parent_has_died_meanwhile_is_not_begun():
     "\x1b[1;31m", "\x1b[2J", "\x1b[?25l", "\x1b]0;title\x07", "\x1bc", "\x1b"])
 def test_no_code_of_a_program_s_output_reaches_the_terminal(code):
     assert strip_terminal_codes(f"a{code}\nb") == "a\nb"
+
+
+def test_a_turn_is_waited_for_no_longer_than_the_limit(tmp_path):
+    path = tmp_path / "run.lock"
+    held = take_turn(path)
+    with pytest.raises(RunError, match="is held by another run"):
+        take_turn(path, 0.1)
+    held.close()
+    take_turn(path, 0.1).close()
+
+
+def test_a_lock_that_leads_elsewhere_is_refused(tmp_path):
+    """Another user may have put a link where everybody writes."""
+    path = tmp_path / "run.lock"
+    path.symlink_to(tmp_path / "precious")
+    with pytest.raises(RunError, match="export TMPDIR="):
+        take_turn(path)
+    assert not (tmp_path / "precious").exists()

@@ -1,18 +1,21 @@
-"""Clients that send nonsense, flood, or never read: the others are served as before."""
+"""Clients that send nonsense, flood, or never read, and a halted simulator: others are served."""
 
 import asyncio
 import json
 import os
 import random
 import resource
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import aiohttp
 import pytest
 from sim_viewer import hub, registry
 from sim_viewer.options import Options
-from sim_viewer.registry import Context, Node
+from sim_viewer.registry import WORKERS, Context, Node
+from sim_viewer.tools import sim
 from sim_viewer.tools.paced import Paced
 
 MESSAGES = 1000
@@ -314,3 +317,26 @@ def test_a_browser_is_cleared_up_after_although_one_part_fails(monkeypatch):
         node.close()
 
     asyncio.run(story())
+
+
+ANSWER_TIME, DEADLINE = 2.0, 15.0  # s; between them is what a busy machine may take
+
+
+def test_a_halted_simulator_is_asked_once_and_keeps_no_worker(monkeypatch):
+    asked, going_on = [], threading.Event()
+
+    def halted(name, kind):
+        asked.append(name)
+        going_on.wait()
+        raise sim.Refused("gone")
+
+    monkeypatch.setattr(sim, "call", halted)
+    monkeypatch.setattr(sim, "ANSWER_TIME", ANSWER_TIME)
+    pause = sim.SharedPause()
+    with ThreadPoolExecutor(WORKERS) as workers:
+        for _ in range(2):
+            began = time.monotonic()
+            assert set(workers.map(pause.read, ["/gazebo"] * WORKERS)) == {None}
+            assert time.monotonic() - began < DEADLINE
+    assert len(asked) == 1
+    going_on.set()

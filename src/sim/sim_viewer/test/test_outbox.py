@@ -1,8 +1,10 @@
-"""What waits for one browser: newest only, unless it is to be kept; and JSON that browsers read."""
+"""What waits for one browser, newest only unless kept; JSON that browsers read; freed memory."""
 
 import asyncio
 import json
 import struct
+import subprocess
+import sys
 
 from sim_viewer.hub import MOST_BYTES, MOST_KEPT, Outbox, encode
 
@@ -76,3 +78,34 @@ def test_nothing_of_a_closed_watch_is_sent():
 def test_numbers_that_json_does_not_know_become_null():
     text = encode({"a": [1.0, float("nan"), (float("inf"),)]})
     assert json.loads(text) == {"a": [1, None, [None]]}
+
+
+STORY = """
+import pathlib, threading
+from sim_viewer.node import give_back_large_blocks
+
+def used():
+    return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * 4096 >> 20
+
+def work(barrier):
+    for _ in range(3):
+        cloud = b"x" * (16 << 20)
+        barrier.wait()
+        del cloud
+        barrier.wait()
+
+give_back_large_blocks()
+before, barrier = used(), threading.Barrier(8)
+threads = [threading.Thread(target=work, args=(barrier,)) for _ in range(8)]
+for one in threads:
+    one.start()
+for one in threads:
+    one.join()
+print(used() - before)
+"""
+
+
+def test_large_messages_leave_nothing_behind():
+    done = subprocess.run([sys.executable, "-c", STORY], capture_output=True, text=True,
+                          check=True, timeout=60)
+    assert int(done.stdout) < 10  # MB; otherwise 40 and more

@@ -2,7 +2,7 @@
 
 import math
 import time
-import types
+from types import SimpleNamespace
 
 import pytest
 import rosbag
@@ -11,7 +11,15 @@ from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 from rospy import Time
 from sim_viewer.registry import Refused
-from sim_viewer.tools.bags import bag_path, check_topic, contents, existing_bag, listing, new_bag
+from sim_viewer.tools.bags import (
+    Bags,
+    bag_path,
+    check_topic,
+    contents,
+    existing_bag,
+    listing,
+    new_bag,
+)
 from sim_viewer.tools.clock import FactorMeter
 from sim_viewer.tools.console import line_of, pick
 from sim_viewer.tools.parameters import check_name, read_value, rows, to_yaml
@@ -192,4 +200,20 @@ def test_topics_to_record_are_names(topic):
 
 
 def test_a_stamp_without_seconds_attribute_is_no_header():
-    assert sample_time(types.SimpleNamespace(header=3), 5.0) == 5.0
+    assert sample_time(SimpleNamespace(header=3), 5.0) == 5.0
+
+
+def test_a_folder_that_goes_away_ends_the_recording_with_a_word(tmp_path):
+    asked = []
+    recording = SimpleNamespace(running=True)
+
+    def interrupt():
+        asked.append("interrupt")
+        recording.running = False
+
+    recording.interrupt = interrupt
+    kept = Bags(SimpleNamespace(options=SimpleNamespace(bags=str(tmp_path / "bags"))))
+    kept.folder = tmp_path / "gone"
+    kept._guard(recording)
+    assert asked == ["interrupt"]
+    assert kept.note == f"{tmp_path / 'gone'}: No such file or directory"

@@ -1,4 +1,4 @@
-"""mapping.launch and navigation.launch: nodes, files, and that every parameter is a known one."""
+"""What race, mapping and navigation.launch set: nodes, files, and that each parameter is known."""
 
 import math
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import yaml
 from racecar_in_world import PACKAGE
-from roslaunch.config import ROSLaunchConfig
+from roslaunch.config import ROSLaunchConfig, load_config_default
 from roslaunch.xmlloader import XmlLoader
 
 from map_server.map_files import read_map
@@ -91,3 +91,19 @@ def test_the_map_is_the_field_within_the_walls():
     free = (grid.cells == 0).sum() * grid.resolution ** 2
     assert free == pytest.approx(12.0 * 8.0, rel=0.02)
     assert grid.cells[tuple(grid.cells_of([(0.0, 0.0)])[0])] == 0
+
+
+BRAKES = 8.0  # m/s^2, measured: from 2.2 m/s in 0.28 s
+STANDS = 0.7  # s, after the last command
+ARRIVES = 0.04  # s, until that command moves the wheels
+
+
+@pytest.mark.parametrize("lockstep, rate_hz", [("", None), ("/motor_output", 0.0)])
+def test_a_car_whose_follower_hangs_stands_in_time_at_its_greatest_speed(lockstep, rate_hz):
+    file = str(PACKAGE / "launch" / "race.launch")
+    config = load_config_default([(file, [f"lockstep:={lockstep}"])], None, verbose=False)
+    values = {name: param.value for name, param in config.params.items()}
+    settings = PACKAGE.parent / "car_control" / "config" / "lane_follow.yaml"
+    fastest = yaml.safe_load(settings.read_text(encoding="utf-8"))["max_speed"]
+    assert values["/motor_control/timeout"] + fastest / BRAKES + ARRIVES <= STANDS
+    assert values.get("/motor_control/rate_hz") == rate_hz
