@@ -16,16 +16,13 @@ from pathlib import Path
 
 import psutil
 import pytest
+from sleep_trial import SleepTrial
 
-HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE))
-
-from sleep_trial import SleepTrial  # noqa: E402
-
-from evaluation.command_line import INTERRUPTED, NOT_RUN, PASSED  # noqa: E402
-from evaluation.trial import run_trial  # noqa: E402
+from evaluation.command_line import INTERRUPTED, NOT_RUN, PASSED
+from evaluation.trial import run_trial
 
 pytestmark = pytest.mark.processes
+HERE = Path(__file__).parent
 LIMIT = 60.0  # s, wall, for what takes 2 s on a quiet machine
 
 

@@ -1,7 +1,6 @@
-"""Lets the tests import drawn_room, and the scripts."""
+"""Lets the tests import the scripts."""
 
 import sys
 from pathlib import Path
 
-FOLDER = Path(__file__).parent
-sys.path[:0] = [str(FOLDER), str(FOLDER.parent / "scripts")]
+sys.path.insert(0, str(Path(__file__).parents[1] / "scripts"))

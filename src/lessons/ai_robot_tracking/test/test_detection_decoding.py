@@ -1,6 +1,5 @@
 """Boxes from stored outputs of both layouts are those of the reference, to a hundredth of a px."""
 
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,10 +13,9 @@ from ai_robot_tracking.detection.decoding import (
     letterbox,
     to_picture,
 )
+from reference_decoding import reference_boxes
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE))
-from reference_decoding import reference_boxes  # noqa: E402
 
 
 @pytest.fixture(scope="module")
