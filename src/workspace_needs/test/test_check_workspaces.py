@@ -7,7 +7,9 @@ from robot_texts import LAUNCH, ROBOT
 from workspace_needs.check import workspaces
 from workspace_needs.check.command import main
 from workspace_needs.check.findings import PROBLEM, Finding, table
-from workspaces import add_package
+from workspace_needs.command import not_to_be_had
+from workspace_needs.verdicts import judge
+from workspaces import add_files, add_package
 
 # A file is checked in a fork of this process, which must not hold engines or OpenGL of other tests.
 pytestmark = pytest.mark.processes
@@ -166,3 +168,40 @@ def test_a_package_whose_scripts_are_all_fine(package, tmp_path, capsys):
     package(talk__py="#!/usr/bin/env python3\nimport nobodys\n")
     (tmp_path / "talk.py").chmod(0o755)
     assert main([folder]) == 1 and "C++ files" not in capsys.readouterr().out
+
+
+@pytest.fixture
+def wheel(tmp_path):
+    """A launch file of a package whose workspace is not sourced; its package has a script."""
+    folder = add_package(tmp_path / "src", "my_wheel", cmake="add_executable(n main.cpp)")
+    add_files(folder, {"package.xml": (folder / "package.xml").read_text(),
+                       "main.cpp": "int main() {}\n",
+                       "scripts/talk.py": "#!/usr/bin/env python3\n",
+                       "a.launch": '<launch><node pkg="my_wheel" type="talk.py" name="a"/>\n'
+                       '<node pkg="my_wheel" type="n" name="n"/></launch>',
+                       "r.xacro": '<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro">'
+                       '<link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0"'
+                       ' ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><xacro:property '
+                       'name="p" value="$(find my_wheel)"/></robot>'})
+    return folder
+
+
+@pytest.mark.parametrize("words", [["a.launch"], ["", "a.launch"], ["r.xacro"]])
+def test_a_file_of_a_workspace_that_is_not_sourced(wheel, capsys, words):
+    assert main([str(wheel / words[0]), *words[1:]]) == 0
+    said = capsys.readouterr().out
+    assert "is not here" not in said and said.endswith("all of it will work\n")
+    assert ("node my_wheel/n: once the workspace is built" in said) is ("launch" in words[-1])
+    add_package(wheel.parent / "again", "my_wheel")
+    assert main([str(wheel / words[0]), *words[1:]]) == 1
+    assert "build: two packages are called my_wheel: " in capsys.readouterr().out
+
+
+def test_a_mistyped_package_of_the_same_workspace(wheel, capsys):
+    path, meant = wheel / "a.launch", "nobody has that name; is my_wheel meant?"
+    path.write_text(path.read_text().replace("my_wheel", "my_whel"))
+    for what in (wheel.parents[1], wheel, path):
+        assert main([str(what)]) == 1
+        assert f"package my_whel is not here: {meant}" in capsys.readouterr().out
+    assert not_to_be_had(judge(wheel.parent)) == [
+        f"my_wheel will be without my_whel: {meant} (a.launch asks for it)"]

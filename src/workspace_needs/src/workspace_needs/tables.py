@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from fnmatch import fnmatchcase
@@ -64,9 +65,12 @@ class Tables:
     def _read(self, name: str) -> dict:
         return yaml.load((self._folder / name).read_text("utf-8"), LOADER) or {}
 
-    def answer(self, key: str) -> Answer:
-        """Who has `key`; a name in Debian's form is looked up in apt's list."""
-        return self.known(key) or Answer(UNKNOWN, why=self._nobody(key))
+    def answer(self, key: str, beside: Iterable[str] = ()) -> Answer:
+        """Who has `key`; a name in Debian's form is looked up in apt's list.
+
+        `beside`: other packages that may be meant.
+        """
+        return self.known(key) or Answer(UNKNOWN, why=self._nobody(key, beside))
 
     def known(self, key: str) -> Answer | None:
         """The same, without the search for a similar name, which takes long."""
@@ -94,9 +98,9 @@ class Tables:
     def _named(release: str) -> str:
         return RELEASES.get(release, release or "this system")
 
-    def answer_cmake(self, name: str) -> Answer:
+    def answer_cmake(self, name: str, beside: Iterable[str] = ()) -> Answer:
         """The same for a name in find_package or pkg_check_modules, mostly a key itself."""
-        answer = self.answer(name)
+        answer = self.answer(name, beside)
         if answer.kind in (OURS, DEBIAN):
             return answer
         if name in self.cmake_names:
@@ -121,8 +125,9 @@ class Tables:
         folder, slash, _ = header.partition("/")
         return next((row for row in self.absences if slash and folder in row.headers), None)
 
-    def _nobody(self, key: str) -> str:
-        similar = [name for name in get_close_matches(key, [*self.ours, *self.debian], 3, 0.85)
+    def _nobody(self, key: str, beside: Iterable[str]) -> str:
+        known = [*beside, *self.ours, *self.debian]
+        similar = [name for name in get_close_matches(key, known, 3, 0.85)
                    if name != key and is_slip(key, name)]
         if similar:
             return f"nobody has that name; is {similar[0]} meant?"
@@ -136,13 +141,12 @@ def tables() -> Tables:
     return Tables()
 
 
-def why_absent(name: str, *debian_names: str) -> str:
-    """Why there is no `name`, or how it is had, perhaps by one of Debian's other names for it."""
-    for key in (name, *debian_names):
-        answer = tables().answer(key)
-        if answer.kind == DEBIAN:
-            return f"sudo apt-get install {' '.join(answer.packages)}"
-    return tables().answer(name).why or "source devel/setup.bash of its workspace first"
+def why_absent(name: str, beside: Iterable[str] = ()) -> str:
+    """Why there is no `name`, or how it is had; `beside`: other packages that may be meant."""
+    answer = tables().answer(name, beside)
+    if answer.kind == DEBIAN:
+        return f"sudo apt-get install {' '.join(answer.packages)}"
+    return answer.why or "source devel/setup.bash of its workspace first"
 
 
 def is_slip(typed: str, name: str) -> bool:

@@ -88,7 +88,7 @@ class _Judgement:
             name for answer in self._answers.values() for name in answer.packages)
 
     def _answer(self, key: str) -> Answer:
-        return Answer(OURS) if key in self._names else self._tables.answer_cmake(key)
+        return Answer(OURS) if key in self._names else self._tables.answer_cmake(key, self._names)
 
     def of(self, package: Package) -> Verdict:
         """The verdict on one package, not yet on those that it depends on."""

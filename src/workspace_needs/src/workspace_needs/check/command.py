@@ -10,9 +10,12 @@ import rospkg
 from bullet_sim import __version__
 from bullet_sim.errors import did_you_mean
 from bullet_sim_ros.unsourced import unsourced
-from workspace_needs.check.contents import Check
 from workspace_needs.check.findings import ACCEPTED, UNCHECKED, Finding, is_serious, table
-from workspace_needs.check.workspaces import package_findings, workspace_findings
+from workspace_needs.check.workspaces import (
+    file_findings,
+    package_findings,
+    workspace_findings,
+)
 from workspace_needs.tables import UNKNOWN, is_slip, tables, why_absent
 from workspace_needs.workspace import WorkspaceError
 
@@ -98,5 +101,5 @@ def _findings(args: argparse.Namespace) -> list[Finding] | None:
                 return workspace_findings(folder, args.arguments, args.run_commands)
     if file is None and not args.launch:
         return package_findings(folder, args.arguments, args.run_commands)
-    check = Check(args.arguments, args.run_commands)
-    return check.launch_of_package(folder, args.launch) if file is None else check.file(file)
+    return file_findings(*((folder, args.launch) if file is None else (file.parent, file)),
+                         args.arguments, args.run_commands)

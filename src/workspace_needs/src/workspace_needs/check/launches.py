@@ -90,9 +90,9 @@ class LaunchChecker:
         self._texts = texts
         self._resources = resources
         # It lists all packages, when it is first asked.
-        packages = rospkg.RosPack(rospkg.get_ros_paths(environ))
+        self._packages = rospkg.RosPack(rospkg.get_ros_paths(environ))
         self._find_node = cache(  # which looks through a whole package
-            partial(roslib.packages.find_node, rospack=packages))
+            partial(roslib.packages.find_node, rospack=self._packages))
 
     def launch_file(self, path: Path, arguments: list[str], alone: bool = True) -> list[Finding]:
         """Findings about its nodes, and about what its simulator and its spawners will load.
@@ -163,8 +163,8 @@ class LaunchChecker:
                 yield self._not_there(node, where, name)
                 return
         except rospkg.ResourceNotFound:
-            yield Finding(where, name, ABSENT,
-                          f"package {node.package} is not here: {why_absent(node.package)}")
+            why = why_absent(node.package, self._packages.list())
+            yield Finding(where, name, ABSENT, f"package {node.package} is not here: {why}")
             return
         yield from list(script_findings(Path(files[0]))) or [Finding(where, name, WORKS)]
         words = _words(node)

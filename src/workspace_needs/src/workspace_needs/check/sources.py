@@ -112,7 +112,7 @@ def script_findings(path: Path, package: Package | None = None) -> Iterator[Find
     then be SILENT.
     """
     try:
-        yield from list(_script_findings(path, package or Package(_package_of(path)),
+        yield from list(_script_findings(path, package or Package(package_of(path)),
                                          named=package is None))
     except Exception as error:  # of one script, which must not end the others
         yield Finding(str(path), "file", UNCHECKED,
@@ -169,7 +169,7 @@ def _start_findings(path: Path, unfound: str, for_python: bool) -> Iterator[Find
                       f"roslaunch do not find it; type: chmod +x {shlex.quote(str(path))}")
 
 
-def _package_of(path: Path) -> Path:
+def package_of(path: Path) -> Path:
     """The folder of the package that a file is in, else its own."""
     return next((each for each in path.parents if (each / "package.xml").is_file()), path.parent)
 

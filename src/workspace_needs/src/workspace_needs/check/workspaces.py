@@ -6,10 +6,12 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import rospkg
+
 from workspace_needs.check.contents import Check, files_of
 from workspace_needs.check.findings import ABSENT, PROBLEM, SERIOUS, UNCHECKED, WORKS, Finding
 from workspace_needs.check.modules import source_of
-from workspace_needs.check.sources import program_findings
+from workspace_needs.check.sources import package_of, program_findings
 from workspace_needs.verdicts import Verdict, judge
 from workspace_needs.workspace import WorkspaceError, source_folder
 
@@ -42,17 +44,42 @@ def workspace_findings(path: Path, arguments: list[str], run_commands: bool) -> 
 
 def package_findings(folder: Path, arguments: list[str], run_commands: bool) -> list[Finding]:
     """Findings about a package, built or not: as of its workspace, and about all that is in it."""
-    source, verdicts, found = source_of(folder)[0], [], []
-    try:
-        if folder.parent.name != "share":  # installed, and so built
-            verdicts = judge(source)
-    except WorkspaceError as error:
-        found = [Finding(f"workspace {source.parent}", "build", PROBLEM, str(error))]
+    # In share/ it is installed, and so built.
+    verdicts, found = ([], []) if folder.parent.name == "share" else _judged(folder)
     check = _open(verdicts, arguments, run_commands)
     own = next((each for each in verdicts if each.folder.resolve() == folder.resolve()), None)
     if own:
-        found = _of_package(own, source.parent)
+        found = _of_package(own, source_of(folder)[0].parent)
     return [*found, *check.package(folder, _where(own) if own else "")]
+
+
+def file_findings(folder: Path, file: Path | str, arguments: list[str], run_commands: bool
+                  ) -> list[Finding]:
+    """Findings about a file in `folder`, or about the launch file of that name below it.
+
+    If that is of a package that is not found here, as if its workspace were built and sourced.
+    """
+    package, verdicts, found = package_of(folder / "package.xml"), [], []
+    if Path(file).suffix != ".py" and (package / "package.xml").is_file() and (
+            package.resolve() not in _packages_here()):
+        verdicts, found = _judged(package)
+    check = _open(verdicts, arguments, run_commands)
+    return [*found, *(check.file(file) if isinstance(file, Path) else
+                      check.launch_of_package(folder, file))]
+
+
+def _packages_here() -> set[Path]:
+    packages = rospkg.RosPack()
+    return {Path(packages.get_path(name)).resolve() for name in packages.list()}
+
+
+def _judged(folder: Path) -> tuple[list[Verdict], list[Finding]]:
+    """The verdicts on all packages of the workspace that one is in, or why there are none."""
+    source = source_of(folder)[0]
+    try:
+        return judge(source), []
+    except WorkspaceError as error:
+        return [], [Finding(f"workspace {source.parent}", "build", PROBLEM, str(error))]
 
 
 def _open(verdicts: list[Verdict], arguments: list[str], run_commands: bool) -> Check:
