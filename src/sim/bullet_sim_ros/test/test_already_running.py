@@ -11,7 +11,7 @@ import psutil
 import pytest
 
 from bullet_sim_ros import already_running
-from bullet_sim_ros.already_running import Sign, registering, sign_of_life, to_kill
+from bullet_sim_ros.already_running import Sign, lacks_terminal, registering, sign_of_life
 
 LIMIT = 60.0  # s
 NAME = "/gazebo"
@@ -62,17 +62,17 @@ def test_who_answers_at_the_address(node, expected):
         assert sign(uri) is expected
 
 
-@pytest.mark.parametrize(("has_terminal", "its_pid", "ends"), [
+@pytest.mark.parametrize(("has_terminal", "its_pid", "lacks"), [
     (None, os.getpid, True), (os.getpid, os.getpid, False),
     (os.getppid, os.getpid, False),  # a verb, which starts its programs in sessions of their own
     (None, os.getppid, False)])  # it has no such port: a number of another machine
-def test_what_ends_a_node_without_a_terminal(monkeypatch, has_terminal, its_pid, ends):
+def test_a_node_without_a_terminal(monkeypatch, has_terminal, its_pid, lacks):
     pid, with_terminal = its_pid(), has_terminal() if has_terminal else None
     monkeypatch.setattr(psutil.Process, "terminal",
                         lambda self: "/dev/pts/3" if self.pid == with_terminal else None)
     with (serving(xmlrpc_server(getPid=lambda _: [1, "", pid])) as node,
           serving(xmlrpc_server(lookupNode=lambda _caller, _node: [1, "", node])) as master):
-        assert to_kill(master, NAME) == (pid if ends else None)
+        assert lacks_terminal(master, NAME) is lacks
 
 
 def test_a_machine_whose_name_is_not_known_may_have_it():

@@ -16,7 +16,6 @@ import xmlrpc.client
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import Enum
-from pathlib import Path
 from urllib.parse import urlsplit
 from xml.parsers.expat import ExpatError
 
@@ -83,10 +82,10 @@ def sign_of_life(master_uri: str, name: str) -> Sign:
     return Sign.ANSWERS if told == name else Sign.GONE
 
 
-def to_kill(master_uri: str, name: str) -> int | None:
-    """What ends a node that runs on this machine without a terminal, where no Ctrl-C can: the
-    process, or the roslaunch that started it; None for any other node. A program in a terminal,
-    such as make, may have started that roslaunch in a session of its own.
+def lacks_terminal(master_uri: str, name: str) -> bool:
+    """Whether a node runs on this machine without a terminal, where no Ctrl-C can end it, as after
+    `kill -9` of its roslaunch. A program in a terminal, such as make, may have started that
+    roslaunch in a session of its own.
     """
     _, _, uri = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport(ANSWER_TIME)).lookupNode(
         name, name)
@@ -95,13 +94,9 @@ def to_kill(master_uri: str, name: str) -> int | None:
         node = xmlrpc.client.ServerProxy(uri, ImpatientTransport(ANSWER_TIME))
         process = psutil.Process(node.getPid(name)[2])
         if urlsplit(uri).port not in {one.laddr.port for one in process.net_connections("tcp")}:
-            return None  # a number of another machine, or of a container
-        parent = process.parent()
-        if parent and any(Path(word).name == "roslaunch" for word in parent.cmdline()[:2]):
-            process = parent
-        above = (process, *process.parents())
-        return None if any(each.terminal() for each in above) else process.pid
-    return None
+            return False  # a number of another machine, or of a container
+        return not any(each.terminal() for each in (process, *process.parents()))
+    return False
 
 
 @contextmanager
