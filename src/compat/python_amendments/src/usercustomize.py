@@ -3,9 +3,11 @@
 cv2 gets its windows, cv_bridge a faster swap of colours, Tk a line for want of a screen, some
 modules get the names that they had when a script was written, and rospy says what a node waits for.
 A roslaunch that a program of ours refuses ends with one line; each begins without setuptools.
-Programs of ours print in the language of the locale, and end at Ctrl-C without a traceback.
+Programs of ours print in the language of the locale, and end without a traceback at Ctrl-C, or when
+the reader of their output has ended.
 """
 
+import atexit
 import collections
 import os
 import sys
@@ -122,23 +124,45 @@ def choose_language():
 def end_quietly():
     """Let Ctrl-C end our programs and roslaunch without a traceback from their start, as later on.
 
-    roslaunch may be at its imports, or waiting for a program that a <param> names.
+    roslaunch may be at its imports, or waiting for a program that a <param> names. The same where
+    the reader of the output has ended, also if the last lines are still to be written.
     """
     shown = sys.excepthook
 
     def show(kind, *rest):
-        if kind is KeyboardInterrupt:
-            if is_launcher():
-                return None
-            try:
-                from terminal_language.wanted import is_ours
-            except ImportError:
-                return shown(kind, *rest)
-            if is_ours(sys.orig_argv):
-                return None
-        return shown(kind, *rest)
+        if not (kind in (KeyboardInterrupt, BrokenPipeError)
+                and (is_launcher() or is_program_of_ours())
+                and (kind is KeyboardInterrupt or is_unread())):
+            shown(kind, *rest)
+
+    def write_last_lines():
+        try:
+            sys.stdout.flush()
+        except BrokenPipeError:
+            if is_launcher() or is_program_of_ours():
+                is_unread()
+        except (AttributeError, OSError, ValueError):  # closed, or none: Python says so
+            pass
 
     sys.excepthook = show
+    atexit.register(write_last_lines)
+
+
+def is_program_of_ours():
+    try:
+        from terminal_language.wanted import is_ours
+    except ImportError:
+        return False
+    return is_ours(sys.orig_argv)
+
+
+def is_unread():
+    """Whether the reader of the output has ended; what is still written then goes nowhere."""
+    try:
+        from node_basics.ending import drop_unread_output
+    except ImportError:
+        return False
+    return drop_unread_output()
 
 
 choose_language()

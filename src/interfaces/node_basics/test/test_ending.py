@@ -40,6 +40,13 @@ at_signals(lambda: time.sleep(600), 1, os._exit)
 print("ready", flush=True)
 time.sleep(600)
 """
+UNREAD = """
+from node_basics.ending import drop_unread_output
+print("ready", drop_unread_output() or "", sep="", flush=True)
+input()
+assert drop_unread_output()
+print("a line of the cleanup", flush=True)
+"""
 SIGNALS = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 
 
@@ -96,3 +103,12 @@ def test_a_program_that_cannot_even_be_asked_is_ended(start):
     process.send_signal(signal.SIGTERM)
     assert process.communicate(timeout=LIMIT) == ("", "")
     assert process.returncode == 128 + signal.SIGTERM
+
+
+def test_a_cleanup_whose_lines_nobody_reads_goes_on(start):
+    process = start(UNREAD)
+    process.stdout.close()
+    process.stdin.write("\n")
+    process.stdin.flush()
+    assert process.wait(LIMIT) == 0 and process.stderr.read() == ""
+    process.stdout = None  # for what ends it

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from types import FrameType
 
 import rospy
+from node_basics.ending import drop_unread_output
 
 POLL_PERIOD = 0.1  # s
 UNDO_LIMIT = 10.0  # s of wall time; roslaunch kills what has not ended after 15
@@ -17,6 +18,7 @@ def bounded(undo: Callable[[], None]) -> None:
 
     A manager works on one request at a time, so in a paused world all of them wait behind a switch.
     """
+    drop_unread_output()
     thread = threading.Thread(target=undo, daemon=True)
     thread.start()
     thread.join(UNDO_LIMIT)

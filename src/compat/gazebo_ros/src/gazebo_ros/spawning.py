@@ -12,6 +12,7 @@ import rospy
 from gazebo_msgs.msg import ModelStates
 from gazebo_msgs.srv import DeleteModel
 from geometry_msgs.msg import Point, Pose, Quaternion
+from node_basics.ending import drop_unread_output
 from std_srvs.srv import Empty
 
 from bullet_sim.pose import quaternion_from_rpy
@@ -143,6 +144,7 @@ def delete_on_signal(name: str, gazebo: str) -> None:
     rospy.loginfo(f"Waiting for shutdown to delete model {name}")
     while not stop_requested and not rospy.is_shutdown():
         rospy.rostime.wallsleep(POLL_PERIOD)
+    drop_unread_output()
     rospy.signal_shutdown("terminated")
 
 

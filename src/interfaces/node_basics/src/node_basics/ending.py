@@ -6,6 +6,8 @@ And what they leave of a terminal whose keys they have read.
 from __future__ import annotations
 
 import contextlib
+import os
+import select
 import signal
 import termios
 import threading
@@ -33,6 +35,21 @@ def interruptible() -> Iterator[None]:
     for number in SIGNALS:
         signal.signal(number, interrupt)
     yield
+
+
+def drop_unread_output() -> bool:
+    """Whether the reader of the output, as of `roslaunch ... | grep`, has ended: what is printed
+    from now on then goes nowhere, so that no line ends the cleanup.
+    """
+    outputs = select.poll()
+    for number in (1, 2):
+        outputs.register(number, 0)
+    unread = [number for number, event in outputs.poll(0) if event & select.POLLERR]
+    for number in unread:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, number)
+        os.close(nowhere)
+    return bool(unread)
 
 
 @contextlib.contextmanager
