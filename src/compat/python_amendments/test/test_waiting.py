@@ -156,6 +156,21 @@ def test_why_no_image_comes(said, master):
         "program then goes on by itself."]
 
 
+def test_why_no_pose_of_a_turtle_comes(said, master):
+    kind = "turtlesim/Pose"
+    waiting.tell_of_silence("/turtle1/pose", kind)
+    master.topics["/turtle1/pose"] = kind, ["/turtlesim"]
+    for name in ("/turtle9/pose", "/turtle1/pose", "/pose"):
+        waiting.tell_of_silence(name, kind)
+    assert said == [
+        "Nothing on /turtle1/pose yet: nobody publishes it. Type in another terminal: rosrun "
+        "turtlesim turtlesim_node; this program then goes on by itself.",
+        "Nothing on /turtle9/pose yet: there is no turtle turtle9. Type in another terminal: "
+        "rosservice call /spawn 2 2 0 turtle9; this program then goes on by itself.",
+        "Nothing on /pose yet: nobody publishes it. If /turtle1/pose is meant, end this program "
+        "and start it with /pose:=/turtle1/pose."]
+
+
 @pytest.mark.parametrize(("program", "topic", "typed"), [
     ("learning_topic/scripts/01follower.py", TOPIC, "learning_topic 0course.launch"),
     ("car_control/scripts/lane_follow.py", "", "racecar_description car_control.launch"),
@@ -239,6 +254,8 @@ def test_a_topic_that_was_heard_is_not_missed(subscribe):
     assert heard.received == ("message", "connection") and len(subscribe.looks) == 1
     subscribe.looks[0]()
     assert subscribe.told == []
+    subscribe("/turtle9/pose", "turtlesim/Pose")
+    assert len(subscribe.looks) == 2
 
 
 def test_waiting_in_a_loop_starts_one_timer_and_is_told(subscribe):

@@ -1,6 +1,7 @@
 """Says in a node, once, what it waits for and what to type then, where rospy itself is silent.
 
-For a ROS master, the first image, scan or odometry, a service, a simulator that has ended.
+For a ROS master, the first image, scan, odometry or pose of a turtle, a service, a simulator that
+has ended.
 """
 
 import contextlib
@@ -15,8 +16,9 @@ from node_basics import listening
 from node_basics.listening import listens
 from terminal_language import translated
 
+TURTLES = "turtlesim/Pose"
 SEEN = ("nav_msgs/Odometry", "sensor_msgs/CompressedImage", "sensor_msgs/Image",
-        "sensor_msgs/LaserScan")  # by nodes that drive
+        "sensor_msgs/LaserScan", TURTLES)  # by nodes that drive
 # Programs that have loaded one of these say themselves which topic is silent.
 WATCH_THEMSELVES = {"nav_nodes", "run_session"}
 SIMULATOR = "gazebo"  # node name, in any namespace
@@ -30,6 +32,10 @@ NO_SIMULATOR = ("Nothing on %s yet: nobody publishes it, and no simulator runs. 
 OTHER_TOPIC = ("Nothing on %s yet: nobody publishes it. If %s is meant, end this program and start "
                "it with %s:=%s.")
 NO_SENSOR = "Nothing on %s yet: no robot of the simulator that runs has such a sensor."
+NO_TURTLE = ("Nothing on %s yet: there is no turtle %s. Type in another terminal: rosservice call "
+             "/spawn 2 2 0 %s; this program then goes on by itself.")
+NO_TURTLESIM = ("Nothing on %s yet: nobody publishes it. Type in another terminal: rosrun "
+                "turtlesim turtlesim_node; this program then goes on by itself.")
 STILL = "Nothing on %s yet, though it is published: is the simulation paused?"
 NO_SERVICE = ("Nobody offers the service %s yet: start the program that does in another terminal; "
               "this one then goes on by itself.")
@@ -175,12 +181,18 @@ def tell_of_silence(name, kind):
     publishers = dict(asked("getSystemState")[0])
     by_simulators = {topic for topic, nodes in publishers.items()
                      if SIMULATOR in (node.rpartition("/")[2] for node in nodes)}
-    alike = by_simulators & {topic for topic, its_kind in asked("getPublishedTopics", "")
-                             if its_kind == kind}
+    of_kind = {topic for topic, its_kind in asked("getPublishedTopics", "") if its_kind == kind}
+    alike = of_kind if kind == TURTLES else by_simulators & of_kind
+    place, _, end = name.rpartition("/")
     if name in by_simulators:
         tell_once(STILL, name)
     elif name in publishers:  # by a driver, which knows when it has something
         return
+    elif kind == TURTLES and not alike:
+        tell_once(NO_TURTLESIM, name)
+    elif kind == TURTLES and place and end == "pose":
+        turtle = place.rpartition("/")[2]
+        tell_once(NO_TURTLE, name, turtle, turtle)
     elif alike:
         meant = difflib.get_close_matches(name, alike, 1, 0.0)[0]
         tell_once(OTHER_TOPIC, name, meant, name, meant)
