@@ -83,7 +83,8 @@ OF_PYTHON = (
     "empty expression not allowed", "single '}' is not allowed",
     "expecting a valid expression after '{'", "valid expression required before '}'")
 # Of PyYAML.
-OF_YAML = ("expected '{0}' or '{1}', but got '{2}'", "expected '{0}', but found '{1}'")
+OF_YAML = ("expected '{0}' or '{1}', but got '{2}'", "expected '{0}', but found '{1}'",
+           "{0} in \"<unicode string>\", line {1}, column {2}: {3}")
 # Of shell scripts that `python3 -m terminal_language` translates, as the terminal is a learner's.
 OF_SHELL = (
     "rosed: {0} is not installed; {1} opens {2}", "rosed: {0} has no screen here; {1} opens {2}",
@@ -140,7 +141,9 @@ OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "hint", "igno
             "Cannot locate message [{0}] in package [{1}] with paths {2}",
             "{0} includes <{1}>, and the C++ API of Gazebo is not here",
             "{0} packages: all that Debian has for them is installed",  # of deps
-            "{0} packages: to be installed: {1}", "{0} packages: installing {1}")
+            "{0} packages: to be installed: {1}", "{0} packages: installing {1}",
+            "1 package: all that Debian has for them is installed",
+            "1 package: to be installed: {0}", "1 package: installing {0}")
 
 
 def texts_of(source: str) -> Iterator[str]:

@@ -123,7 +123,11 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
     ("a/0: 94.1 points, closed: 0.9 points: 3.4 cm RMS beside the line (all points at 3 cm)",
      "a/0: 94.1 分，跑完: 0.9 分: 偏离线 3.4 厘米（均方根；3 厘米得满分）"),
     ("check: x: no such file or package (did you mean y?); try `rospack list`, or give a path",
-     "check: x: 没有这个文件或包（是不是 y？）；试试 `rospack list`，或给出路径")])
+     "check: x: 没有这个文件或包（是不是 y？）；试试 `rospack list`，或给出路径"),
+    ("1 package: installing a b", "1 个包：正在安装 a b"),
+    ("a: not valid YAML: expected '<document start>', but found '<scalar>' in "
+     '"<unicode string>", '"line 3, column 5: b ^",
+     "a：不是有效的 YAML：第 3 行第 5 列：应为“<document start>”，却是“<scalar>”：b ^")])
 def test_the_shipped_catalogue_has(english, chinese):
     assert read_catalogue("zh_CN").translate(english) == chinese
 
