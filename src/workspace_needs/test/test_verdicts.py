@@ -258,6 +258,12 @@ def test_a_slip_in_a_package_of_messages(tmp_path, components, name, text, why):
     assert ": ".join(said).startswith(f"CMakeLists.txt:{why}")
 
 
+def test_an_error_behind_what_a_program_printed_without_a_line_end(tmp_path):
+    add_package(tmp_path / "src", "talk", cmake="execute_process(COMMAND printf 1.2)\nno_such()")
+    assert of(tmp_path / "src", "talk").stops == {
+        "CMakeLists.txt:5": 'Unknown CMake command "no_such".'}
+
+
 def test_a_folder_without_a_package_xml(tmp_path, capsys, bare):
     source = tmp_path / "src"
     (add_package(source, "arm") / "package.xml").unlink()

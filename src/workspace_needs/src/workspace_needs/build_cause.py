@@ -15,6 +15,7 @@ MOST = 6
 COMPILER = re.compile(r"^\S+:\d+(:\d+)?: (fatal )?error: ")
 LINKER = re.compile(r"undefined reference to |ld: cannot find ")
 CMAKE = re.compile(r"^CMake Error")
+GLUED = re.compile(r"(?<=[^\n])(?=CMake Error (?:at|in) \S+:\d+ \()")  # to what has no line end
 CMAKE_HEAD = re.compile(r"^CMake Error(?: (?:at|in) (\S+?(?::\d+)?))?(?: \(\w+\))?:\s*")
 CMAKE_CALLER = re.compile(r"^  (\S+:\d+) \(\w+\)$")
 LONGEST = 240  # characters of an error in one line
@@ -65,7 +66,7 @@ def traceback_block(lines: list[str]) -> list[str]:
 
 def cause(text: str) -> list[str]:
     """The lines on the first error in a build's output; none if nothing looks like one."""
-    lines = text.splitlines()
+    lines = GLUED.sub("\n", text).splitlines()
     for position, line in enumerate(lines):
         rest = lines[position:]
         if CMAKE.search(line):
@@ -83,6 +84,7 @@ def cause(text: str) -> list[str]:
 
 def in_one_line(text: str) -> str:
     """The first error in the output of CMake, run on one package, with its place in the package."""
+    text = GLUED.sub("\n", text)
     first = cause(text)
     if not first:
         return (text.strip().splitlines() or ["CMake ended without a word"])[-1]
