@@ -147,7 +147,8 @@ def test_the_first_follower_decides(tmp_path, monkeypatch, capsys):
     ("end", "code", "said"),
     [
         (RunError("the machine broke"), NOT_RUN, "race_trials: the machine broke"),
-        (KeyboardInterrupt(), INTERRUPTED, "race_trials: interrupted; all processes ended"),
+        (KeyboardInterrupt(), INTERRUPTED, "3 of 4 cases are done; --resume goes on with the others"
+         "\nrace_trials: interrupted; all processes ended"),
     ],
 )
 def test_what_was_driven_is_kept(tmp_path, monkeypatch, capsys, end, code, said):

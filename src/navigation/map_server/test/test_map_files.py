@@ -278,7 +278,7 @@ def test_what_the_yaml_parser_gives_up_on_is_no_yaml(tmp_path, text):
 
 
 def test_a_number_of_thousands_of_digits_is_not_spelt_out(tmp_path):
-    with pytest.raises(MapMetadataError, match="resolution is a number of thousands of digits"):
+    with pytest.raises(MapMetadataError, match="a number of more than 1000 characters"):
         read_map(write(tmp_path, greys(GREYS), resolution="0x" + "f" * 5000))
 
 

@@ -189,9 +189,9 @@ def _run(tool: str, args: list[str], left: LeftOut) -> NoReturn:
     command = [f"{FOLDER}/{tool}", *args]
     if not left.lines:
         os.execv(command[0], command)
+    # A terminal sends Ctrl-C to both, `kill -INT` only to this one.
+    signal.signal(signal.SIGINT, lambda *_: signal.alarm(PATIENCE))
     with subprocess.Popen(command) as process:
-        # A terminal sends Ctrl-C to both, `kill -INT` only to this one.
-        signal.signal(signal.SIGINT, lambda *_: signal.alarm(PATIENCE))
         signal.signal(signal.SIGALRM, lambda *_: process.send_signal(signal.SIGINT))
         signal.signal(signal.SIGTERM, lambda *_: process.terminate())
         code = process.wait()
