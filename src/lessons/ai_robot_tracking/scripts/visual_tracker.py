@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import cv2
 import rospy
 from ai_robot_tracking.parameters import read_settings
-from ai_robot_tracking.red_target import RedSettings, find_blobs, red_mask
+from ai_robot_tracking.red_target import RedSettings, all_red, find_blobs, red_mask
 from ai_robot_tracking.settings import number
 from ai_robot_tracking.tracker_node import TrackerNode
 
@@ -67,6 +67,9 @@ class VisualTracker:
             rospy.loginfo("target in sight" if self.blob else "nothing red in sight: turning")
         return page_command(self.blob, picture.shape[1], self.settings)
 
+    def fills(self, picture):
+        return all_red(picture, self.settings.colour)
+
     def mark(self, picture, command):
         if self.blob is not None:
             centre = round(self.blob.column), round(self.blob.row)
@@ -79,7 +82,7 @@ class VisualTracker:
 def main():
     rospy.init_node("visual_tracker")
     tracker = VisualTracker(read_settings(PageSettings, "visual_tracker"))
-    TrackerNode(tracker.settings.image_timeout, tracker.drive, tracker.mark)
+    TrackerNode(tracker.settings.image_timeout, tracker.drive, tracker.mark, tracker.fills)
     rospy.spin()
 
 

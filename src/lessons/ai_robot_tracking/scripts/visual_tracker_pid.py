@@ -8,6 +8,7 @@ import cv2
 import rospy
 from ai_robot_tracking.follower import Follower, FollowerSettings
 from ai_robot_tracking.parameters import offer_settings, read_settings
+from ai_robot_tracking.red_target import all_red
 from ai_robot_tracking.tracker_node import TrackerNode
 
 
@@ -16,7 +17,8 @@ class VisualTrackerPid:
 
     def __init__(self, settings):
         self.follower = Follower(settings)
-        self.node = TrackerNode(settings.image_timeout, self.drive, self.mark, self.follower.halt)
+        self.node = TrackerNode(settings.image_timeout, self.drive, self.mark, self.fills,
+                                self.follower.halt)
         offer_settings(settings, self.change)
 
     def change(self, settings):
@@ -30,6 +32,9 @@ class VisualTrackerPid:
         if self.follower.state != before:
             rospy.loginfo("%s", self.follower.state)
         return command
+
+    def fills(self, picture):
+        return all_red(picture, self.follower.settings.colour)
 
     def mark(self, picture, command):
         seen = self.follower.seen

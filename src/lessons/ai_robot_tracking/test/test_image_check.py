@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from ai_robot_tracking import tracker_node
 from ai_robot_tracking.image_check import BadImage, ImageCheck, decode
+from ai_robot_tracking.red_target import Colour, all_red
 from drawn_room import cylinder, room
 from sensor_msgs.msg import Image
 
@@ -79,17 +80,36 @@ def rospy(monkeypatch):
     return fake
 
 
-def test_a_picture_gives_a_command_but_not_after_the_end(rospy):
-    node = tracker_node.TrackerNode(0.5, lambda _picture, _time: (0.2, 0.1), lambda *_: None)
+@pytest.fixture
+def node(rospy):
+    node = tracker_node.TrackerNode(0.5, lambda _picture, _time: (0.2, 0.1), lambda *_: None,
+                                    lambda picture: all_red(picture, Colour(0, 10, 100, 100)))
     node._commands, node._annotated = MagicMock(), MagicMock()
     node._annotated.get_num_connections.return_value = 0
-    sent = node._commands.publish.call_args_list
-    pixels = room()
-    message = Image(height=pixels.shape[0], width=pixels.shape[1], encoding="bgr8",
-                    step=3 * pixels.shape[1], data=pixels.tobytes())
-    node._take_image(message)
-    assert [call.args[0].linear.x for call in sent] == [0.2]
+    return node
+
+
+def show(node, pixels):
+    """Give the node an image (rows, columns, 3), BGR; all speeds sent so far, m/s."""
+    node._take_image(Image(height=pixels.shape[0], width=pixels.shape[1], encoding="bgr8",
+                           step=3 * pixels.shape[1], data=pixels.tobytes()))
+    return [call.args[0].linear.x for call in node._commands.publish.call_args_list]
+
+
+def test_a_picture_gives_a_command_but_not_after_the_end(rospy, node):
+    assert show(node, room()) == [0.2]
     rospy.is_shutdown.return_value = True
     node._end()
-    node._take_image(message)
-    assert [call.args[0].linear.x for call in sent] == [0.2, 0.0]
+    assert show(node, room()) == [0.2, 0.0]
+
+
+def test_at_the_target_it_says_once_that_it_has_arrived(rospy, node):
+    red = np.full((ROWS, COLUMNS, 3), (10, 10, 200), np.uint8)
+    for _ in range(2):
+        show(node, red)
+    assert show(node, red) == [0.0, 0.0, 0.0]
+    assert [call.args[0] for call in rospy.loginfo.call_args_list] == [
+        "arrived: the target fills the image on %s; standing"]
+    rospy.logwarn_throttle.assert_not_called()
+    show(node, np.full_like(red, 90))
+    assert "bad image" in rospy.logwarn_throttle.call_args.args[1]

@@ -12,6 +12,10 @@ class BadImage(ValueError):
     """One line that says what is wrong with an image."""
 
 
+class BlankImage(BadImage):
+    """All is of one colour: a camera's fault, or the target is all that it sees."""
+
+
 def decode(encoding: str, width: int, height: int, step: int, data: bytes) -> np.ndarray:
     """The image (height, width, 3), uint8, BGR, from the fields of a sensor_msgs/Image.
 
@@ -54,7 +58,7 @@ class ImageCheck:
         elif (not moving and not self._frozen) or time < self._same_since:
             self._same_since = time  # a standing robot sees no change, or time was reset
         if (picture == picture[0, 0]).all():
-            raise BadImage("it is blank: every pixel has the same colour")
+            raise BlankImage("it is blank: every pixel has the same colour")
         self._frozen = self._frozen or time - self._same_since >= FROZEN_TIME
         if self._frozen:
             raise BadImage("it is frozen: the same image again and again while the robot moves")

@@ -76,6 +76,11 @@ def red_mask(picture: np.ndarray, colour: Colour) -> np.ndarray:
     return cv2.dilate(mask, KERNEL, iterations=PASSES)
 
 
+def all_red(picture: np.ndarray, colour: Colour) -> bool:
+    """Whether each pixel of a BGR image has this colour."""
+    return bool(red_mask(picture, colour).all())
+
+
 def find_blobs(mask: np.ndarray, least_radius: float) -> list[Blob]:
     """All blobs with an enclosing circle larger than this radius (px), largest area first."""
     contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_SIMPLE)

@@ -14,7 +14,7 @@ from geometry_msgs.msg import Twist
 from sensor_msgs.msg import Image
 from std_msgs.msg import Bool
 
-from ai_robot_tracking.image_check import BadImage, ImageCheck, decode
+from ai_robot_tracking.image_check import BadImage, BlankImage, ImageCheck, decode
 
 CHECK_PERIOD = 0.1   # s
 WARNING_PERIOD = 5   # s
@@ -26,18 +26,19 @@ class TrackerNode:
     """One command on cmd_vel for each image on camera/rgb/image_raw; zero for an unusable one.
 
     `drive(picture, time)` gets BGR (rows, columns, 3) and s, and returns the command;
-    `mark(picture)` draws what was seen, for ~annotated; `halt()` is called on each stop.
+    `mark(picture)` draws what was seen, for ~annotated; `fills(picture)`: does it show the target
+    and nothing else? `halt()` is called on each stop.
     """
 
     def __init__(self, image_timeout: float, drive: Callable[[np.ndarray, float], Command],
-                 mark: Callable[[np.ndarray, Command], None],
+                 mark: Callable[[np.ndarray, Command], None], fills: Callable[[np.ndarray], bool],
                  halt: Callable[[], None] = lambda: None):
         self.image_timeout = image_timeout
-        self._drive, self._mark, self._halt = drive, mark, halt
+        self._drive, self._mark, self._fills, self._halt = drive, mark, fills, halt
         self._lock = threading.Lock()  # images, e-stop and timer run in different threads
         self._check, self._bridge = ImageCheck(), cv_bridge.CvBridge()
         self._told: Command = (0.0, 0.0)
-        self._stopped, self._waiting = False, True
+        self._stopped, self._waiting, self._arrived = False, True, False
         self._stamp, self._fresh = rospy.Time(), rospy.get_time()
         self._commands = rospy.Publisher("cmd_vel", Twist, queue_size=1)
         self._annotated = rospy.Publisher("~annotated", Image, queue_size=1)
@@ -83,9 +84,16 @@ class TrackerNode:
                              message.data)
             self._check.look(picture, rospy.get_time(), self._told != (0.0, 0.0))
         except BadImage as error:
-            rospy.logwarn_throttle(WARNING_PERIOD, "standing: bad image on %s: %s",
-                                   self._images.resolved_name, error)
+            if isinstance(error, BlankImage) and self._fills(picture):
+                if not self._arrived:
+                    rospy.loginfo("arrived: the target fills the image on %s; standing",
+                                  self._images.resolved_name)
+                self._arrived = True
+            else:
+                rospy.logwarn_throttle(WARNING_PERIOD, "standing: bad image on %s: %s",
+                                       self._images.resolved_name, error)
             return None
+        self._arrived = False
         return picture
 
     def _check_images(self, _event: Any) -> None:
