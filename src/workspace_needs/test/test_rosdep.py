@@ -137,6 +137,23 @@ def test_apt_says_in_a_line_what_is_wrong(monkeypatch, answers, words):
         apt.install(["libno-dev"])
 
 
+def test_apts_lists_are_read_again_once_they_have_changed(tmp_path, monkeypatch):
+    lists, command = tmp_path / "lists", tmp_path / "apt-cache"
+    lists.write_text("liba-dev")
+    os.utime(lists, (1, 1))
+    command.write_text(f"#!/bin/sh\ncat {lists}\n")
+    command.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    monkeypatch.setenv("ROS_HOME", str(tmp_path / "ros"))
+    monkeypatch.setattr(apt, "SOURCES", (lists,))
+    for changed, names in ((1, "liba-dev"), (1, "liba-dev"), (2e9, "libb-dev")):
+        os.utime(lists, (changed, changed))
+        apt.names.cache_clear()
+        assert apt.names() == {names}
+        lists.write_text("libb-dev")
+    apt.names.cache_clear()
+
+
 def test_neither_root_nor_sudo(monkeypatch):
     monkeypatch.setattr(apt.os, "geteuid", lambda: 1000)
     monkeypatch.setattr(apt.shutil, "which", lambda name: None)

@@ -1,5 +1,7 @@
 """What becomes of a workspace's packages, and what `make deps` and catkin_make say of it."""
 
+import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,7 +14,7 @@ from workspace_needs.places import hook
 from workspace_needs.tables import Tables
 from workspace_needs.verdicts import judge
 from workspace_needs.workspace import OUR_ADDRESS, WorkspaceError, source_folder
-from workspaces import add_package, turtlebot3_style
+from workspaces import add_package, add_plain, turtlebot3_style
 
 from workspace_needs import command, configuring
 from workspace_needs import verdicts as verdicts_module
@@ -28,10 +30,18 @@ def bare(monkeypatch):
 
 @pytest.fixture(scope="module", autouse=True)
 def kept(tmp_path_factory):
-    """A folder for what is kept of one test for the next."""
+    """A folder for what is kept of one test for the next; its workspaces are all at one place."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ROS_HOME", str(tmp_path_factory.mktemp("ros_home")))
-        yield
+        yield tmp_path_factory.mktemp("ws")
+
+
+@pytest.fixture
+def tmp_path(kept):
+    """So that CMake configures a package that several tests write alike only once."""
+    yield kept
+    shutil.rmtree(kept)
+    kept.mkdir()
 
 
 def of(source, name):
@@ -61,7 +71,7 @@ def test_what_nobody_has_stops_its_package_and_those_built_on_it(tmp_path, bare)
 
 def test_what_another_release_has_is_said(tmp_path, bare):
     source = tmp_path / "src"
-    add_package(source, "eye", "compressed_image_transport")
+    add_plain(source, "eye", "compressed_image_transport")
     verdict, = judge(source, Tables(of_release="bookworm"))
     assert verdict.lacks["compressed_image_transport"].startswith(
         "Debian 13 has it, Debian 12 does not")
@@ -79,7 +89,7 @@ def test_a_lesson_that_is_copied_is_the_learners(tmp_path, bare):
     repository, own = tmp_path / "repository" / "src", tmp_path / "own" / "src"
     for folder, name in [(repository, "workspace_needs"), (repository / "lessons", "lesson"),
                          (own, "lesson")]:
-        file = add_package(folder, name, "roscpp") / "package.xml"
+        file = add_plain(folder, name, "roscpp") / "package.xml"
         text = file.read_text(encoding="utf-8")
         file.write_text(text.replace("who@example.com", OUR_ADDRESS), encoding="utf-8")
     assert judge(repository) == []
@@ -88,7 +98,7 @@ def test_a_lesson_that_is_copied_is_the_learners(tmp_path, bare):
 
 def test_a_debian_name_is_its_own_key(tmp_path, bare):
     source = tmp_path / "src"
-    add_package(source, "a", "libxdo-dev no-such-library-dev")
+    add_plain(source, "a", "libxdo-dev no-such-library-dev")
     found = of(source, "a")
     assert "no-such-library-dev" in found.lacks
     assert "libxdo-dev" in found.missing or "libxdo-dev" in found.lacks  # apt may have no lists
@@ -110,8 +120,8 @@ def test_what_stops_every_build_tool_is_said_at_once(tmp_path, bare):
 
 def test_packages_that_start_one_another_are_built(tmp_path, bare):
     source = tmp_path / "src"
-    body = add_package(source, "body")
-    add_package(source, "world", "body", "body")
+    body = add_plain(source, "body")
+    add_plain(source, "world", "body")
     (body / "launch").mkdir()
     (body / "launch/a.launch").write_text(
         '<launch><include file="$(find world)/launch/b.launch"/></launch>', encoding="utf-8")
@@ -120,7 +130,7 @@ def test_packages_that_start_one_another_are_built(tmp_path, bare):
     text = manifest.read_text("utf-8")
     manifest.write_text(text.replace("</package>", "<exec_depend>arm</exec_depend></package>"),
                         encoding="utf-8")
-    only = add_package(source, "arm") / "package.xml"
+    only = add_plain(source, "arm") / "package.xml"
     only.write_text(only.read_text("utf-8").replace(
         "</package>", "<exec_depend>body</exec_depend></package>"), encoding="utf-8")
     assert of(source, "body").builds and of(source, "arm").builds
@@ -133,19 +143,19 @@ def test_packages_that_start_one_another_are_built(tmp_path, bare):
 def test_what_is_configured_later_stops_a_package(tmp_path, bare):
     source = tmp_path / "src"
     for name in ("arm", "wheel"):
-        add_package(source, name, "", "tool")
+        add_plain(source, name, "", "find_package(tool REQUIRED)")
     add_package(source, "tool")
     assert of(source, "arm").stops["tool"].endswith("add <depend>tool</depend> there")
     wheel = of(source, "wheel")
     assert wheel.builds  # by luck of its name, which is said
     assert wheel.lacks["tool"].endswith("add <depend>tool</depend> there")
-    add_package(source, "arm_2", "tool", "tool")
+    add_plain(source, "arm_2", "tool", "find_package(tool REQUIRED)")
     assert of(source, "arm_2").builds and not of(source, "arm_2").lacks
 
 
 def test_what_catkin_config_saved_counts(tmp_path, bare):
     source = tmp_path / "src"
-    add_package(source, "one", cmake="if(NOT WITH_ARM)\nmessage(FATAL_ERROR \"no arm\")\nendif()")
+    add_plain(source, "one", cmake="if(NOT WITH_ARM)\nmessage(FATAL_ERROR \"no arm\")\nendif()")
     assert not of(source, "one").builds
     profile = tmp_path / ".catkin_tools/profiles/mine"
     profile.mkdir(parents=True)
@@ -154,6 +164,22 @@ def test_what_catkin_config_saved_counts(tmp_path, bare):
     assert of(source, "one").builds
     (profile / "config.yaml").write_text("cmake_args: [\n", encoding="utf-8")
     assert not of(source, "one").builds
+
+
+def test_the_compiler_is_tried_for_the_first_package_alone(tmp_path, bare, monkeypatch):
+    tried = tmp_path / "tried"
+    compiler = tmp_path / "bin/c++"
+    compiler.parent.mkdir()
+    compiler.write_text(f'#!/bin/sh\necho >> {tried}\nexec /usr/bin/c++ "$@"\n')
+    compiler.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{compiler.parent}:{os.environ['PATH']}")
+    counts, choice = [], f"set(CMAKE_CXX_COMPILER {compiler})"
+    for name, before in (("one", ""), ("two", ""), ("three", choice)):
+        file = add_plain(tmp_path / "src", name) / "CMakeLists.txt"
+        file.write_text(before + "\n" + file.read_text())
+        assert of(tmp_path / "src", name).builds
+        counts.append(len(tried.read_text()))
+    assert 0 < counts[0] == counts[1] < counts[2]
 
 
 def test_what_cmake_started_ends_with_it_at_the_limit(tmp_path, bare, monkeypatch):
@@ -177,13 +203,13 @@ def runs(pid: int) -> bool:
         return False
 
 
-@pytest.mark.parametrize("kind", ["SHARED", "STATIC"])
-def test_a_package_may_use_the_library_of_another(tmp_path, bare, kind):
+def test_a_package_may_use_the_libraries_of_others(tmp_path, bare):
     source = tmp_path / "src"
-    folder = add_package(source, "arm", "", "", f"catkin_package(LIBRARIES arm)\n"
-                         f"add_library(arm {kind} src/arm.cpp)\nreturn()")
-    (folder / "src/arm.cpp").write_text("int links() { return 1; }", encoding="utf-8")
-    add_package(source, "hand", "arm", "arm")
+    for name, kind in (("arm", "SHARED"), ("leg", "STATIC")):
+        folder = add_package(source, name, "", "", f"catkin_package(LIBRARIES {name})\n"
+                             f"add_library({name} {kind} src/{name}.cpp)\nreturn()")
+        (folder / f"src/{name}.cpp").write_text("int links() { return 1; }", encoding="utf-8")
+    add_package(source, "hand", "arm leg", "arm leg")
     assert of(source, "hand").builds
 
 
@@ -199,10 +225,10 @@ def test_what_no_catkin_can_build_is_left_out(tmp_path, bare):
 
 
 def test_what_cmake_finds_although_no_list_has_it_is_there(tmp_path, bare):
-    folder = add_package(tmp_path / "src", "a", "", "", "set(CMAKE_MODULE_PATH "
-                         "${CMAKE_CURRENT_SOURCE_DIR})\nfind_package(Own REQUIRED)")
+    folder = add_plain(tmp_path / "src", "a", "", "set(CMAKE_MODULE_PATH "
+                       "${CMAKE_CURRENT_SOURCE_DIR})\nfind_package(Own REQUIRED)")
     (folder / "FindOwn.cmake").write_text("set(Own_FOUND TRUE)", encoding="utf-8")
-    add_package(tmp_path / "src", "b", "", "", "find_package(Wibble REQUIRED)")
+    add_plain(tmp_path / "src", "b", "", "find_package(Wibble REQUIRED)")
     assert of(tmp_path / "src", "a").builds
     assert list(of(tmp_path / "src", "b").stops) == ["Wibble"]
 
@@ -230,8 +256,8 @@ def test_deps_says_what_it_would_install_and_what_nobody_has(tmp_path, capsys, b
 
 
 def test_catkin_make_leaves_out_what_waits_for_a_package_of_debian(tmp_path, capsys, bare):
-    add_package(tmp_path / "src", "filter", "bfl", "", "find_package(bfl REQUIRED)")
-    add_package(tmp_path / "src", "user", "filter", "filter")
+    add_plain(tmp_path / "src", "filter", "bfl", "find_package(bfl REQUIRED)")
+    add_plain(tmp_path / "src", "user", "filter", "find_package(filter REQUIRED)")
     add_package(tmp_path / "src", "wheel", "", "")
     assert all(verdict.builds for verdict in judge(tmp_path / "src"))  # once it is installed
     option = catkin_make_words(["-C", str(tmp_path)])[0][len(hook())]
@@ -259,9 +285,9 @@ def test_a_slip_in_a_package_of_messages(tmp_path, components, name, text, why):
 
 
 def test_an_error_behind_what_a_program_printed_without_a_line_end(tmp_path):
-    add_package(tmp_path / "src", "talk", cmake="execute_process(COMMAND printf 1.2)\nno_such()")
+    add_plain(tmp_path / "src", "talk", cmake="execute_process(COMMAND printf 1.2)\nno_such()")
     assert of(tmp_path / "src", "talk").stops == {
-        "CMakeLists.txt:5": 'Unknown CMake command "no_such".'}
+        "CMakeLists.txt:4": 'Unknown CMake command "no_such".'}
 
 
 def test_a_folder_without_a_package_xml(tmp_path, capsys, bare):
@@ -286,7 +312,7 @@ def test_a_package_xml_that_is_not_utf8(tmp_path):
 
 
 def test_a_header_of_messages_that_nobody_has_is_told(tmp_path, bare):
-    folder = add_package(tmp_path / "src", "a", "", "", "add_executable(a src/a.cpp)")
+    folder = add_plain(tmp_path / "src", "a", "", "add_executable(a src/a.cpp)")
     (folder / "include/a").mkdir(parents=True)
     for name in ("src/a.cpp", "src/unused.cpp", "include/a/seen.h", "include/a/unused.h"):
         (folder / name).write_text("#include <nothing_msgs/X.h>\n", encoding="utf-8")
@@ -301,8 +327,8 @@ def test_a_header_of_messages_that_nobody_has_is_told(tmp_path, bare):
 
 
 def test_a_package_is_not_told_to_name_what_it_names(tmp_path, bare):
-    add_package(tmp_path / "src", "b", "", "", 'message(FATAL_ERROR "worn out")')
-    add_package(tmp_path / "src", "c", "b", "b")
+    add_plain(tmp_path / "src", "b", "", 'message(FATAL_ERROR "worn out")')
+    add_plain(tmp_path / "src", "c", "b", "find_package(b REQUIRED)")
     assert of(tmp_path / "src", "c").stops == {"b": "it is left out itself"}
     assert not of(tmp_path / "src", "c").lacks
 

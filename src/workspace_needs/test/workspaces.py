@@ -30,6 +30,14 @@ def add_package(source: Path, name: str, depends: str = "", components: str = ""
     return folder
 
 
+def add_plain(source: Path, name: str, depends: str = "", cmake: str = "") -> Path:
+    """The same without catkin, which takes a second to configure."""
+    folder = add_package(source, name, depends)
+    (folder / "CMakeLists.txt").write_text(
+        f"cmake_minimum_required(VERSION 3.0.2)\nproject({name} CXX)\n{cmake}\n", encoding="utf-8")
+    return folder
+
+
 def add_files(folder: Path, files: Mapping[str, str]) -> Path:
     """The folder, as that of a package with these files: those with #! are executable."""
     for name, text in {"package.xml": "<package><name>arm</name></package>", **files}.items():

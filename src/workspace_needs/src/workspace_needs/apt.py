@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
 import subprocess
 import sys
 from functools import cache
+from pathlib import Path
+
+from workspace_needs.places import kept_folder
 
 NO_NETWORK = re.compile(
     r"Temporary failure|Could not (resolve|connect)|Unable to connect"
     r"|Cannot initiate the connection|Network is unreachable|Connection (refused|timed out|failed)"
     r"|Failed to fetch")
 STALE = re.compile(r"Unable to locate package (\S+)|404 +Not Found|has no installation candidate")
+SOURCES = (Path("/var/lib/apt/lists"), Path("/var/lib/dpkg/status"))  # of the names
 OPTIONS = ("-y", "-qq", "--no-install-recommends", "-o", "Dpkg::Use-Pty=0",
            "-o", "DPkg::Lock::Timeout=600", "-o", "Acquire::Retries=1")
 KEPT = ("http_proxy", "https_proxy", "no_proxy")  # environment variables that sudo must keep
@@ -37,12 +42,21 @@ def as_root(command: list[str]) -> list[str]:
 
 @cache
 def names() -> frozenset[str]:
-    """All packages in apt's lists, which it reads for a second where it keeps no index of them."""
+    """All packages in apt's lists, which it reads for a second where it keeps no index of them.
+
+    The names are kept until apt's lists or the installed packages change.
+    """
+    kept = kept_folder("debian-names")
+    with contextlib.suppress(OSError):
+        if kept.stat().st_mtime > max(path.stat().st_mtime for path in SOURCES):
+            return frozenset(kept.read_text("utf-8").split())
     try:
         listed = subprocess.run(["apt-cache", "pkgnames"], capture_output=True, text=True,
                                 check=False).stdout
     except OSError:
         return frozenset()
+    with contextlib.suppress(OSError):
+        kept.write_text(listed, "utf-8")
     return frozenset(listed.split())
 
 

@@ -25,6 +25,7 @@ from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 from workspace_needs.build_cause import in_one_line
+from workspace_needs.compilers import Compilers, chooses
 from workspace_needs.places import hook, kept_folder, package_folder
 from workspace_needs.workspace import Package, WorkspaceError
 
@@ -36,6 +37,7 @@ NO_MODULE = re.compile(r"^-- +(?:No p|P)ackage '([^']+)'.*\n(?:--.*\n)*CMake Err
                        r" *A required package was not found", re.MULTILINE)
 QUERY = ".cmake/api/v1/query/codemodel-v2"  # CMake's file API answers into ../../reply
 RULE = re.compile(r"^(\S+): (\S+)$", re.MULTILINE)  # of a Makefile without commands
+CHOICES = ("-DCATKIN_WHITELIST_PACKAGES", "-DCATKIN_BLACKLIST_PACKAGES")  # what is built, not how
 DPKG = Path("/var/lib/dpkg/status")
 
 
@@ -62,7 +64,7 @@ def configure(packages: Iterable[Package], words: Iterable[str] = ()) -> dict[st
     if not packages or not all(map(shutil.which, ("cmake", "c++", "make"))):
         return {}
     graph = _order(packages)
-    words = [word for word in words if word.startswith("-D")]
+    words = [word for word in words if word.startswith("-D") and not word.startswith(CHOICES)]
     try:
         order = list(TopologicalSorter(graph).static_order())
     except CycleError as error:
@@ -129,6 +131,7 @@ class _Run:
         self._packages = packages
         self._graph = {name: graph[name] for name in packages}
         self._words = words
+        self._compilers = Compilers(words)
         self._processes: set[subprocess.Popen] = set()
 
     def all(self) -> dict[str, Configured]:
@@ -169,22 +172,31 @@ class _Run:
                               sources=_sources(made),
                               targets=tuple(target["name"] for target in targets))
         shutil.rmtree(place / "devel" / name, ignore_errors=True)  # so that no other finds it
+        names, told = [], said
+        if "(find_package)" in said.lower():  # the place of each error for what was not found
+            names, second = self._absent(name, place)
+            told += second
+        names += NO_MODULE.findall(told)  # by pkg_check_modules
+        names += " ".join(NO_MODULES.findall(told)).replace("- ", "").split()
+        return Configured(in_one_line(said), tuple(dict.fromkeys(names)), left_out)
+
+    def _absent(self, name: str, place: Path) -> tuple[list[str], str]:
+        """All that a package requires and CMake does not find, and what CMake says then."""
         absent = place / f"{name}.absent"
         absent.touch()
         provider = package_folder() / "cmake/what_is_asked.cmake"
-        second = self._cmake(name, place, f"-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES={provider}",
-                             f"-DWORKSPACE_NEEDS_ABSENT={absent}")[1]
+        said = self._cmake(name, place, f"-DCMAKE_PROJECT_TOP_LEVEL_INCLUDES={provider}",
+                           f"-DWORKSPACE_NEEDS_ABSENT={absent}")[1]
         shutil.rmtree(place / "devel" / name, ignore_errors=True)
-        names = absent.read_text("utf-8").split()
-        for told in (said, second):  # by pkg_check_modules
-            names += NO_MODULE.findall(told)
-            names += " ".join(NO_MODULES.findall(told)).replace("- ", "").split()
-        return Configured(in_one_line(said), tuple(dict.fromkeys(names)), left_out)
+        return absent.read_text("utf-8").split(), said
 
     def _cmake(self, name: str, place: Path, *more: str) -> tuple[int, str]:
         build = place / "build" / name
         shutil.rmtree(build, ignore_errors=True)
         (build / QUERY).mkdir(parents=True)
+        known = None if chooses(self._packages[name].files) else self._compilers
+        if known:
+            known.put_into(build)
         below = [str(place / "devel" / other)
                  for other in _with_dependencies(self._graph[name], self._graph)]
         prefixes = [*below, *os.environ.get("CMAKE_PREFIX_PATH", "").split(":")]
@@ -204,6 +216,8 @@ class _Run:
                            f"  no end within {LIMIT:.0f} s\n")
             finally:
                 self._processes.remove(process)
+        if known:
+            known.keep(build)
         return process.returncode, said
 
 

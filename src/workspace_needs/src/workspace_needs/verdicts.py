@@ -15,6 +15,7 @@ from catkin_pkg.topological_order import topological_order
 
 from workspace_needs.configuring import Configured, configure
 from workspace_needs.tables import DEBIAN, OURS, Answer, Tables
+from workspace_needs.tables import tables as all_tables
 from workspace_needs.workspace import Package, read_workspace, saved_options
 
 INCLUDE_FOLDERS = ("/usr/include", "/usr/local/include")
@@ -50,7 +51,7 @@ def judge(source: Path, tables: Tables | None = None, words: Iterable[str] = (),
     saved. `now`: what is not installed stops a package whose CMake ends with an error without it.
     WorkspaceError if no build tool can build any.
     """
-    tables = tables or Tables()
+    tables = tables or all_tables()
     packages = [package for package in read_workspace(source) if not package.is_ours]
     hidden = {package.name: why for package in packages
               if (why := tables.why_ours_stays(package.name))}
