@@ -17,6 +17,7 @@ from importlib.machinery import PathFinder
 
 # A module, and what amends it after its import: files and functions of python_amendments.
 AMENDMENTS = {
+    "actionlib.action_client": ["waiting.amend_actions"],
     "catkin_pkg.packages": ["launch_end.amend_packages"],
     "cv2": ["old_names.amend_cv2", "no_screen.amend_cv2"],
     "cv_bridge.boost.cv_bridge_boost": ["cv_bridge_colours.amend"],
@@ -27,6 +28,7 @@ AMENDMENTS = {
     "rospy.client": ["waiting.amend_client"],
     "rospy.impl.tcpros_service": ["waiting.amend_services"],
     "rospy.topics": ["waiting.amend_topics"],
+    "tf2_ros.buffer": ["waiting.amend_frames"],
     "tkinter": ["no_screen.amend_tkinter"],
     "yaml": ["old_names.amend_yaml"],
 }

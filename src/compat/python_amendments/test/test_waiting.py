@@ -15,6 +15,7 @@ import pytest
 import rosgraph
 import rospy
 from python_amendments import waiting
+from roslib.packages import find_node
 
 LIMIT = 60.0  # s
 SRC = Path(__file__).resolve().parents[3]
@@ -189,11 +190,67 @@ def test_each_course_has_its_launch_file(command):
 
 
 def test_a_service_that_nobody_offers(said, master):
-    for name in ("/spawn", "/spwan", "/gazebo/pause_physics"):
+    for name in ("/spawn", "/spwan", "/gazebo/pause_physics", "/show_person"):
         waiting.tell_of_service(name)
     assert said == ["Nobody offers the service /spwan yet; is /spawn meant?",
                     "Nobody offers the service /gazebo/pause_physics yet: start the program that "
-                    "does in another terminal; this one then goes on by itself."]
+                    "does in another terminal; this one then goes on by itself.",
+                    "Nobody offers the service /show_person yet. Type in another terminal: rosrun "
+                    "learning_service person_server.py; this program then goes on by itself."]
+
+
+def test_an_action_that_nobody_offers(said, master):
+    master.topics["/there/status"] = "actionlib_msgs/GoalStatusArray", ["/server"]
+    for name in ("there", "addInts", "mine"):
+        waiting.tell_of_action(name)
+    assert said == ["Nobody offers the action /addInts yet. Type in another terminal: rosrun "
+                    "learning_action action01_server.py; this program then goes on by itself.",
+                    "Nobody offers the action /mine yet: start the program that does in another "
+                    "terminal; this one then goes on by itself."]
+
+
+def test_each_frame_that_nobody_publishes_is_told_once(said, monkeypatch):
+    looks = []
+    monkeypatch.setattr(waiting, "WATCH_THEMSELVES", set())
+    monkeypatch.setattr(waiting, "after_grace", lambda *what: looks.append(what))
+
+    class Buffer:
+        def _frameExists(self, frame):
+            return frame == "world"
+
+        def lookup_transform(self, *words):
+            return words
+
+    waiting.amend_frames(SimpleNamespace(Buffer=Buffer))
+    for words in (("turtle2", "turtle1", 0), ("turtle2", "turtle1", 0), ("world", "hand", 0),
+                  ("map", "radar", 0)):
+        assert Buffer().lookup_transform(*words) == words
+    for look, *words in looks:
+        look(*words)
+    assert said == [
+        *(f"Nobody publishes the frame turtle{n} yet. Type in another terminal: rosrun learning_tf "
+          f"demo04_pub.py turtle{n}; this program then goes on by itself." for n in (1, 2)),
+        "Nobody publishes the frame hand yet: start the program that does in another terminal; "
+        "this one then goes on by itself.",
+        "Nobody publishes the frame radar yet. Type in another terminal: rosrun learning_tf "
+        "static_tf_pub.py; this program then goes on by itself."]
+
+
+@pytest.mark.parametrize("command", waiting.STARTED_BY.values())
+def test_what_is_to_be_started_is_there(command):
+    assert find_node(*command.split()[1:3])
+
+
+@pytest.mark.parametrize("seconds", [0, 1])
+def test_the_server_of_an_action_is_waited_for_as_actionlib_does(monkeypatch, seconds):
+    told, kind = [], type("ActionClient", (), {"ns": "addInts", "wait_for_server":
+                                               lambda _, *timeout: timeout})
+    waiting.amend_actions(SimpleNamespace(ActionClient=kind, rospy=rospy))
+    monkeypatch.setattr(waiting, "after_grace", lambda act, name: told.append((act, name)) or
+                        SimpleNamespace(cancel=lambda: told.append("cancelled")))
+    timeout = rospy.Duration(seconds)
+    assert kind().wait_for_server(timeout) == ((timeout,) if seconds else ())
+    assert told == ([] if seconds else [(waiting.tell_of_action, "addInts"), "cancelled"])
 
 
 def test_a_service_is_waited_for_as_rospy_does(monkeypatch):

@@ -23,7 +23,8 @@ def main():
     rospy.init_node("action_client", anonymous=True)
     client = actionlib.SimpleActionClient("addInts", AddIntsAction)
     rospy.loginfo("waiting for addInts")
-    client.wait_for_server()
+    if not client.wait_for_server():
+        return  # Ctrl-C while waiting  等待时按下 Ctrl-C
     goal = AddIntsGoal(num=rospy.get_param("~num", 10))
     client.send_goal(goal, done_callback, active_callback, feedback_callback)
     client.wait_for_result()

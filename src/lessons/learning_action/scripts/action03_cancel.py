@@ -12,7 +12,8 @@ PATIENCE = 1.0  # s
 def main():
     rospy.init_node("action_cancel")
     client = actionlib.SimpleActionClient("addInts", AddIntsAction)
-    client.wait_for_server()
+    if not client.wait_for_server():
+        return  # Ctrl-C while waiting  等待时按下 Ctrl-C
     client.send_goal(AddIntsGoal(num=100))  # 10 s of work  需要 10 秒
     if not client.wait_for_result(rospy.Duration(PATIENCE)):
         rospy.loginfo("not done after %.0f s: cancel", PATIENCE)

@@ -1,7 +1,7 @@
 """Says in a node, once, what it waits for and what to type then, where rospy itself is silent.
 
-For a ROS master, the first image, scan, odometry or pose of a turtle, a service, a simulator that
-has ended.
+For a ROS master, the first image, scan, odometry or pose of a turtle, a service, an action's
+server, a frame, a simulator that has ended.
 """
 
 import contextlib
@@ -37,8 +37,19 @@ NO_TURTLE = ("Nothing on %s yet: there is no turtle %s. Type in another terminal
 NO_TURTLESIM = ("Nothing on %s yet: nobody publishes it. Type in another terminal: rosrun "
                 "turtlesim turtlesim_node; this program then goes on by itself.")
 STILL = "Nothing on %s yet, though it is published: is the simulation paused?"
-NO_SERVICE = ("Nobody offers the service %s yet: start the program that does in another terminal; "
+# With the command that starts who does, and where it is not known.
+NO_SERVICE = ("Nobody offers the service %s yet. Type in another terminal: %s; this program then "
+              "goes on by itself.",
+              "Nobody offers the service %s yet: start the program that does in another terminal; "
               "this one then goes on by itself.")
+NO_ACTION = ("Nobody offers the action %s yet. Type in another terminal: %s; this program then "
+             "goes on by itself.",
+             "Nobody offers the action %s yet: start the program that does in another terminal; "
+             "this one then goes on by itself.")
+NO_FRAME = ("Nobody publishes the frame %s yet. Type in another terminal: %s; this program then "
+            "goes on by itself.",
+            "Nobody publishes the frame %s yet: start the program that does in another terminal; "
+            "this one then goes on by itself.")
 OTHER_SERVICE = "Nobody offers the service %s yet; is %s meant?"
 AGAIN = ("The simulator has ended: no more messages on %s. When the course is started again, this "
          "program goes on by itself.")
@@ -55,6 +66,21 @@ COURSES = {
     "/camera/image": "roslaunch learning_autorace autorace.launch",
     "/camera/image_raw": "roslaunch racecar_description car_control.launch"}
 LINE_COURSE = "roslaunch learning_topic 0course.launch"
+# What starts who offers a service or an action, or publishes a frame, perhaps for a program.
+STARTED_BY = {
+    "/add_two_ints": "rosrun rospy_tutorials add_two_ints_server",
+    "/addInts": "rosrun learning_action action01_server.py",
+    "/clear": "rosrun turtlesim turtlesim_node",
+    "/fibonacci": "rosrun actionlib_tutorials fibonacci_server.py",
+    "/show_person": "rosrun learning_service person_server.py",
+    "/spawn": "rosrun turtlesim turtlesim_node",
+    "/turtle_shape": "rosrun turtle_actionlib shape_server",
+    "dynamic_tf_sub.py turtle1": "rosrun learning_tf dynamic_tf_pub.py",
+    "radar": "rosrun learning_tf static_tf_pub.py",
+    "son1": "rosrun tf2_ros static_transform_publisher 0.2 0.8 0.3 0 0 0 world son1",
+    "son2": "rosrun tf2_ros static_transform_publisher 0.5 0 0 0 0 0 world son2",
+    "turtle1": "rosrun learning_tf demo04_pub.py turtle1",
+    "turtle2": "rosrun learning_tf demo04_pub.py turtle2"}
 HEARD = object()
 SAID = set()  # forms of lines
 
@@ -113,6 +139,40 @@ def amend_services(services):
 
     wait_for_service.__doc__ = wait.__doc__
     services.wait_for_service = wait_for_service
+
+
+def amend_actions(actions):
+    """Let `wait_for_server` say what it waits for; `actions` is actionlib.action_client."""
+    kind = actions.ActionClient
+    wait = kind.wait_for_server
+
+    def wait_for_server(client, timeout=actions.rospy.Duration()):
+        if timeout:  # the program says what it does then
+            return wait(client, timeout)
+        timer = after_grace(tell_of_action, client.ns)
+        try:
+            return wait(client)
+        finally:
+            timer.cancel()
+
+    wait_for_server.__doc__ = wait.__doc__
+    kind.wait_for_server = wait_for_server
+
+
+def amend_frames(buffers):
+    """Let a lookup say, once, which frame does not come; `buffers` is tf2_ros.buffer."""
+    kind, awaited = buffers.Buffer, set()
+    look_up = kind.lookup_transform
+
+    def lookup_transform(buffer, target_frame, source_frame, *rest, **options):
+        frames = {target_frame, source_frame} - awaited
+        if frames:
+            awaited.update(frames)
+            after_grace(tell_of_frames, buffer, frames)
+        return look_up(buffer, target_frame, source_frame, *rest, **options)
+
+    lookup_transform.__doc__ = look_up.__doc__
+    kind.lookup_transform = lookup_transform
 
 
 def amend_topics(topics):
@@ -216,7 +276,33 @@ def tell_of_service(service):
     offered = [each for each, _ in asked("getSystemState")[2]]
     if name not in offered:
         close = difflib.get_close_matches(name, offered, 1, 0.8)
-        tell_once(OTHER_SERVICE if close else NO_SERVICE, name, *close)
+        if close:
+            tell_once(OTHER_SERVICE, name, *close)
+        else:
+            tell_once(*missing(NO_SERVICE, name))
+
+
+def tell_of_action(space):
+    """Log that no server of an action runs; `space`: its topics' name."""
+    import rospy
+
+    name = rospy.resolve_name(space)
+    if f"{name}/status" not in dict(asked("getSystemState")[0]):
+        tell_once(*missing(NO_ACTION, name))
+
+
+def tell_of_frames(buffer, frames):
+    """Log which of them nobody publishes; a parent comes with its child, of which more is known."""
+    lines = [missing(NO_FRAME, frame) for frame in sorted(frames) if not buffer._frameExists(frame)]
+    known = [line for line in lines if line[0] == NO_FRAME[0]]
+    for line in [] if says_it_itself() else known or lines:
+        tell_once(*line)
+
+
+def missing(forms, name):
+    """The line's form and words for a name; `forms`: with a command, and without."""
+    command = STARTED_BY.get(f"{PurePath(sys.argv[0]).name} {name}", STARTED_BY.get(name))
+    return (forms[0], name, command) if command else (forms[1], name)
 
 
 def asked(call, *words):
@@ -235,8 +321,9 @@ def tell_once(form, *words):
     """Log a line, unless this node has said it, perhaps of another name, or ends."""
     import rospy
 
-    if form not in SAID and not rospy.is_shutdown():
-        SAID.add(form)
+    said = (form, *words) if form in NO_FRAME else form  # each frame may be another program's
+    if said not in SAID and not rospy.is_shutdown():
+        SAID.add(said)
         rospy.logwarn("%s", translated(form % words))
 
 
