@@ -1,7 +1,8 @@
 """Python runs this file at its start: it amends a few modules when a script imports them.
 
 cv2 gets its windows, cv_bridge a faster swap of colours, Tk a line for want of a screen, some
-modules get the names that they had when a script was written, and rospy says what a node waits for.
+modules get the names that they had when a script was written, and rospy says what a node waits for;
+it loads without what a node seldom needs.
 A roslaunch that a program of ours refuses ends with one line; each begins without setuptools.
 Programs of ours print in the language of the locale, and end without a traceback at Ctrl-C, or when
 the reader of their output has ended.
@@ -22,7 +23,7 @@ AMENDMENTS = {
     "cv2": ["old_names.amend_cv2", "no_screen.amend_cv2"],
     "cv_bridge.boost.cv_bridge_boost": ["cv_bridge_colours.amend"],
     "joint_state_publisher": ["old_names.amend_joint_state_publisher"],
-    "numpy": ["old_names.amend_numpy"],
+    "numpy": ["old_names.amend_numpy", "quick_start.amend_numpy"],
     "roslaunch.loader": ["launch_end.amend_loader"],
     "roslaunch.pmon": ["launch_end.amend_signals"],
     "rospy.client": ["waiting.amend_client"],
@@ -32,12 +33,13 @@ AMENDMENTS = {
     "tkinter": ["no_screen.amend_tkinter"],
     "yaml": ["old_names.amend_yaml"],
 }
+QUICK = {"catkin.find_in_workspaces", "genpy.message"}  # loaded by quick_start.load_without
 
 
 class Watch:
     """A finder that lets every import pass; it amends each of those modules after its import."""
 
-    waited_for = set(AMENDMENTS)
+    waited_for = QUICK.union(AMENDMENTS)
 
     @classmethod
     def find_spec(cls, name, _path=None, _target=None):
@@ -56,6 +58,11 @@ class Watch:
 
     @staticmethod
     def load(load, module):
+        if module.__name__ in QUICK:
+            from python_amendments.quick_start import load_without
+
+            load_without(load, module)
+            return
         load(module)
         for amendment in AMENDMENTS[module.__name__]:
             file, amend = amendment.split(".")

@@ -1,4 +1,7 @@
-"""roslaunch ends by a refusal of our programs alone, by Ctrl-C, or by SIGHUP unless with nohup."""
+"""roslaunch ends by a refusal of our programs alone, by Ctrl-C, or by SIGHUP unless with nohup.
+
+It and other programs of ROS begin without what they seldom need.
+"""
 
 import os
 import signal
@@ -76,9 +79,50 @@ def test_many_packages_are_read_in_one_process(tmp_path, monkeypatch):
     assert len(packages.find_packages(tmp_path)) == 101
 
 
+def printed(code):
+    """By a Python of its own."""
+    return subprocess.check_output([sys.executable, "-c", code], text=True)
+
+
 def test_every_program_reads_them_so():
-    asks = "import catkin_pkg.packages as p; print(type(p.multiprocessing).__name__)"
-    assert subprocess.check_output([sys.executable, "-c", asks], text=True) == "SimpleNamespace\n"
+    assert printed("import catkin_pkg.packages as p; print(type(p.multiprocessing).__name__)"
+                   ) == "SimpleNamespace\n"
+
+
+@pytest.mark.skipif(sys.version_info >= (3, 12), reason="Python has no distutils of its own")
+def test_roslaunch_begins_without_setuptools():
+    assert printed("import sys; sys.argv[0] = '/usr/bin/roslaunch'; import rosclean; "
+                   "print('setuptools' in sys.modules, 'distutils' in sys.modules)"
+                   ) == "False True\n"
+
+
+def test_a_program_that_imports_roslaunch_keeps_its_setuptools():
+    assert printed("import sys; sys.argv[0] = 'mine.py'; hack = sys.modules.get('_distutils_hack');"
+                   " import rosclean; print(hack is None or hack.DISTUTILS_FINDER in sys.meta_path)"
+                   ) == "True\n"
+
+
+def test_rospy_begins_without_numpy_and_catkin_pkg_and_finds_them_later():
+    before, package, fails, after = printed("""
+import sys, rospy
+from std_msgs.msg import Float64
+print({'numpy', 'catkin_pkg.packages'} & {*sys.modules})
+from catkin.find_in_workspaces import find_in_workspaces
+print(find_in_workspaces(['share'], 'python_amendments'))
+try:
+    Float64('one')._check_types()
+except Exception as error:
+    print(type(error).__name__)
+import numpy
+Float64(numpy.float32(1))._check_types()
+print(numpy.float32 in rospy.msg.genpy.message._valid_float_types)""").splitlines()
+    assert (before, fails, after) == ("set()", "SerializationError", "True")
+    assert package.count("/src/compat/python_amendments'") == 1
+
+
+def test_numpy_that_is_there_already_is_found_at_once():
+    assert printed("import numpy, genpy.message as message; "
+                   "print(message._valid_float_types.count(numpy.float64))") == "1\n"
 
 
 GOES_ON = 3.0  # s
