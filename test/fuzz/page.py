@@ -19,7 +19,6 @@ from mutating import BINARY, TEXT, WORDS, spoilt
 from sensor_msgs.msg import Joy, LaserScan
 from sim_viewer import hub, registry
 from sim_viewer.options import Options
-from sim_viewer.page_scene import Meshes
 from sim_viewer.registry import Context, Node, Refused
 from sim_viewer.server import Server
 from sim_viewer.tools.messages import fill, template
@@ -74,9 +73,7 @@ def request(path: Path) -> None:
 
 async def _exchange(content: bytes) -> bytes:
     node = Node(Options(port=_free_port()), asyncio.get_running_loop())
-    meshes = node.shared(Meshes)
-    server = Server(node, {"/mesh/{number:[0-9]{1,9}}": meshes.serve_mesh,
-                           "/texture/{number:[0-9]{1,9}}": meshes.serve_texture})
+    server = Server(node)
     port = await server.start()
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     try:

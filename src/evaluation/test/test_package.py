@@ -2,6 +2,8 @@
 
 import ast
 import re
+import subprocess
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -43,6 +45,12 @@ def test_no_trial_imports_another_and_nothing_shared_imports_a_trial():
             if package == "evaluation" and other in set().union(*TRIALS) - own:
                 broken.append(f"{path}: {module}")
     assert not broken
+
+
+def test_who_scores_a_drive_loads_no_web_server():
+    """Its start would take a third longer."""
+    code = "import sys, evaluation.course_run; print({'aiohttp', 'asyncio'} & {*sys.modules})"
+    assert subprocess.check_output([sys.executable, "-c", code], text=True) == "set()\n"
 
 
 def test_the_manifest_names_every_package_that_is_used():

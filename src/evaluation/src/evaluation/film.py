@@ -16,7 +16,6 @@ from pathlib import Path
 import cv2
 import numpy as np
 import rospy
-from cv_bridge import CvBridge
 from sensor_msgs.msg import Image
 
 from evaluation.picture import FAINT, PAPER, bgr, write_text
@@ -178,6 +177,8 @@ class CameraFilm(FilmFile):
         if self._ended.is_set() or number == last:
             return
         self._last = number, began
+        from cv_bridge import CvBridge  # only here: it loads OpenCV a second time
+
         view = fit(CvBridge().imgmsg_to_cv2(message))
         if message.encoding == "rgb8":
             view = cv2.cvtColor(view, cv2.COLOR_RGB2BGR)

@@ -32,7 +32,7 @@ def visit(monkeypatch):
 
     async def whole(story, options):
         node = Node(Options(port=free_port(), **options), asyncio.get_running_loop())
-        server = Server(node, {})
+        server = Server(node)
         port = await server.start()
         try:
             async with aiohttp.ClientSession(f"http://127.0.0.1:{port}") as http:

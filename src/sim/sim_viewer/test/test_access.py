@@ -122,7 +122,7 @@ def test_a_token_that_is_no_text_is_wrong(visit, cookie):
 
 def test_two_pages_of_one_machine_keep_their_tokens(visit):
     async def story(http, port):
-        other = Server(Node(Options(port=port, token="other"), asyncio.get_running_loop()), {})
+        other = Server(Node(Options(port=port, token="other"), asyncio.get_running_loop()))
         second = await other.start()  # the first has the port
         async with aiohttp.ClientSession(
                 cookie_jar=aiohttp.CookieJar(unsafe=True)) as browser:
@@ -180,7 +180,7 @@ def test_a_port_of_roots_is_named(monkeypatch):
         raise PermissionError(errno.EACCES, "Permission denied")
 
     async def start():
-        server = Server(Node(Options(port=80), asyncio.get_running_loop()), {})
+        server = Server(Node(Options(port=80), asyncio.get_running_loop()))
         try:
             return await server.start()
         finally:

@@ -16,6 +16,7 @@ from sim_viewer.page_scene import Meshes, mesh_bytes, page_scene
 from sim_viewer.registry import Node
 from sim_viewer.scene import SceneBroadcast
 from sim_viewer.scene_sources import SimulatorSource
+from sim_viewer.server import Server
 
 from bullet_sim import pose as poses
 from bullet_sim.description import Box, LightDescription, Material, Plane, SceneDescription, Visual
@@ -26,9 +27,7 @@ HALF_TURN = (0.0, 0.0, 1.0, 0.0)
 
 @pytest.fixture
 def meshes():
-    loop = asyncio.new_event_loop()
-    yield Meshes(Node(Options(), loop))
-    loop.close()
+    return Meshes()
 
 
 def content(*links, lights=()):
@@ -103,11 +102,11 @@ def fetch(scene, what):
         match_info: dict
 
     async def story():
-        made = Meshes(Node(Options(), asyncio.get_running_loop()))
-        part = page_scene(scene, made)["links"][0]["parts"][0]
-        Request.match_info = {"number": str(part["mesh"] if what == "mesh"
-                                            else part["material"]["texture"])}
-        return await (made.serve_mesh if what == "mesh" else made.serve_texture)(Request)
+        node = Node(Options(), asyncio.get_running_loop())
+        part = page_scene(scene, node.shared(Meshes))["links"][0]["parts"][0]
+        Request.match_info = {"kind": what, "number": str(
+            part["mesh"] if what == "mesh" else part["material"]["texture"])}
+        return await Server(node).serve_shape(Request)
 
     return asyncio.run(story())
 

@@ -21,7 +21,6 @@ from rosgraph.network import get_local_addresses
 from bullet_sim_ros.already_running import full_name, registering
 from sim_viewer import registry
 from sim_viewer.options import TOKEN, OptionError, Options, read_options
-from sim_viewer.page_scene import Meshes
 from sim_viewer.registry import Node
 from sim_viewer.running_page import RUNS_ALREADY, running_page, why_another_port
 from sim_viewer.rviz.config import ConfigError, read_config
@@ -111,9 +110,7 @@ async def _serve(rviz: str) -> None:
     if options.rviz:
         read_config(options.rviz)
     node = Node(options, loop)
-    meshes: Meshes = node.shared(Meshes)
-    server = Server(node, {"/mesh/{number:[0-9]{1,9}}": meshes.serve_mesh,
-                           "/texture/{number:[0-9]{1,9}}": meshes.serve_texture})
+    server = Server(node)
     try:
         port = await server.start()
         await _announce(node, port)

@@ -16,7 +16,6 @@ from typing import Any
 
 import cv2
 import numpy as np
-from aiohttp import web
 
 from bullet_sim.description import LightDescription, Material, Visual
 from bullet_sim.errors import FormatError
@@ -25,7 +24,6 @@ from bullet_sim.meshes.part import MeshPart
 from bullet_sim.pose import Pose, rotate
 from bullet_sim.rendering.scene import LinkShape, link_shape
 from bullet_sim.rendering.scene_text import SceneContent
-from sim_viewer.registry import Node
 
 SHOWN_AS_IS = (".png", ".jpg", ".jpeg", ".bmp", ".gif", ".webp")  # files that browsers can read
 NOTHING = {"background": None, "ambient": [1, 1, 1, 1], "sky": False, "lights": [], "links": []}
@@ -34,9 +32,8 @@ NOTHING = {"background": None, "ambient": [1, 1, 1, 1], "sky": False, "lights": 
 class Meshes:
     """The shapes of the present scenes, kept as long as one of them uses them. Thread safe."""
 
-    def __init__(self, node: Node | None = None):
-        """`node`: needed only to serve them."""
-        self._node = node
+    def __init__(self, _node: object = None):
+        """Made for a page's node too, which shares one among its modules."""
         self._lock = threading.Lock()
         self._wanted: dict[Hashable, set[tuple[Visual, ...]]] = {}  # by owner
         self._shapes: dict[tuple[Visual, ...], LinkShape] = {}
@@ -82,31 +79,19 @@ class Meshes:
 
     def files(self) -> dict[str, tuple[str, bytes]]:
         """Content type and content of all that the page would ask for and can be read, by path."""
-        found = {f"mesh/{number}": ("application/octet-stream", mesh_bytes(part))
-                 for number, part in self._parts.items()}
-        for path, number in self.texture_numbers().items():
+        found = {f"mesh/{number}": self.mesh(number) for number in self._parts}
+        for number in self.texture_numbers().values():
             with contextlib.suppress(FormatError, OSError):
-                found[f"texture/{number}"] = _texture(path)
+                found[f"texture/{number}"] = self.texture(number)
         return found
 
-    async def serve_mesh(self, request: web.Request) -> web.Response:
-        """The handler of /mesh/N; HTTPNotFound if the scene does not have that part any more."""
-        part = self._parts.get(int(request.match_info["number"]))
-        if part is None:
-            raise web.HTTPNotFound(text="no such mesh in the present scene\n")
-        return web.Response(body=await self._node.run_in_thread(mesh_bytes, part),
-                            content_type="application/octet-stream")
+    def mesh(self, number: int) -> tuple[str, bytes]:
+        """Content type and content of /mesh/N; KeyError if no present shape has that part."""
+        return "application/octet-stream", mesh_bytes(self._parts[number])
 
-    async def serve_texture(self, request: web.Request) -> web.Response:
-        """The handler of /texture/N; HTTPNotFound likewise."""
-        path = self._textures.get(int(request.match_info["number"]))
-        if path is None:
-            raise web.HTTPNotFound(text="no such texture in the present scene\n")
-        try:
-            kind, data = await self._node.run_in_thread(_texture, path)
-        except (FormatError, OSError):
-            raise web.HTTPNotFound(text="no image that can be read\n") from None
-        return web.Response(body=data, content_type=kind)
+    def texture(self, number: int) -> tuple[str, bytes]:
+        """Of /texture/N; KeyError likewise; FormatError or OSError if no image can be read."""
+        return _texture(self._textures[number])
 
 
 def mesh_bytes(part: MeshPart) -> bytes:

@@ -1,8 +1,7 @@
-"""The web server: the page's files, the WebSocket, and what other modules serve over HTTP."""
+"""The web server: the page's files, the WebSocket, and the shapes of scenes."""
 
 import errno
 import logging
-from collections.abc import Awaitable, Callable
 from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
@@ -15,15 +14,16 @@ from aiohttp import web
 from aiohttp.http_exceptions import HttpProcessingError
 
 from bullet_sim import __version__
+from bullet_sim.errors import FormatError
 from sim_viewer.access import Access
 from sim_viewer.hub import Hub
 from sim_viewer.options import Options
+from sim_viewer.page_scene import Meshes
 from sim_viewer.registry import Context, Node, operation
 
 PATH = "/about"  # the same over HTTP
 PORTS_TRIED = 100
 EVERYWHERE = ("0.0.0.0", "::", "")  # all addresses of the machine
-Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
 def facts(options: Options) -> dict[str, Any]:
@@ -46,14 +46,13 @@ class NoPort(OSError):
 class Server:
     """Serves from `start` to `close`."""
 
-    def __init__(self, node: Node, routes: dict[str, Handler]):
-        self._options = node.options
+    def __init__(self, node: Node):
+        self._node, self._options = node, node.options
         self._hub = Hub(node)
         self._folder = Path(rospkg.RosPack().get_path("sim_viewer")) / "web"
         app = web.Application(middlewares=[Access(node.options).guard])
         app.router.add_get("/ws", self._hub.serve)
-        for path, handler in routes.items():
-            app.router.add_get(path, handler)
+        app.router.add_get("/{kind:mesh|texture}/{number:[0-9]{1,9}}", self.serve_shape)
         app.router.add_get("/", self._index)
         app.router.add_get(PATH, self._about)
         app.router.add_static("/", self._folder)
@@ -81,6 +80,17 @@ class Server:
         """Close the browsers' connections, then the server."""
         await self._hub.close()
         await self._runner.cleanup()
+
+    async def serve_shape(self, request: web.Request) -> web.Response:
+        """HTTPNotFound if no present scene has it any more, or its file is no image."""
+        meshes: Meshes = self._node.shared(Meshes)
+        read = meshes.mesh if request.match_info["kind"] == "mesh" else meshes.texture
+        try:
+            content_type, data = await self._node.run_in_thread(
+                read, int(request.match_info["number"]))
+        except (KeyError, FormatError, OSError):
+            raise web.HTTPNotFound from None
+        return web.Response(body=data, content_type=content_type)
 
     async def _about(self, request: web.Request) -> web.Response:
         return web.json_response(facts(self._options))
