@@ -9,13 +9,19 @@ import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+from nav_msgs.msg import OccupancyGrid
 
 SOON = 2  # s, in which a move_base that runs answers  正在运行的 move_base 会在此时间内应答
+USAGE = "rosrun nav_demo send_goal.py X Y [DEGREES]   m on the map; e.g. send_goal.py 1.5 -1.5 90"
+OCCUPIED = 65  # of 100  占据的下限
 WAIT = 30  # s to wait for move_base  等 move_base 应答的秒数
 
 
 def place_of(words):
     """x and y, m, and degrees, from the command line.  读取命令行里的位置和角度。"""
+    if {"-h", "--help"} & {*words}:
+        print(USAGE)
+        sys.exit(0)
     try:
         x, y, degrees = (float(word) for word in (words if len(words) == 3 else [*words, 0]))
         if not all(map(math.isfinite, (x, y, degrees))):
@@ -64,6 +70,36 @@ def tell_progress(feedback):
     rospy.loginfo_throttle(2, f"at {place.x:.2f}, {place.y:.2f}")
 
 
+def why_no_plan(grid, x, y):
+    """What the map has at a place in m; grid: an OccupancyGrid.  地图上这个位置是什么。"""
+    info = grid.info
+    west, south = info.origin.position.x, info.origin.position.y
+    column, row = (math.floor(way / info.resolution) for way in (x - west, y - south))
+    if not (0 <= column < info.width and 0 <= row < info.height):
+        east, north = (start + cells * info.resolution
+                       for start, cells in ((west, info.width), (south, info.height)))
+        return (f"{x:g}, {y:g} is off the map, which has x {west:.1f} to {east:.1f} m and "
+                f"y {south:.1f} to {north:.1f} m")
+    cell = grid.data[row * info.width + column]
+    if cell < 0:
+        return f"the map does not know what is at {x:g}, {y:g}"
+    if cell >= OCCUPIED:
+        return f"the map has an obstacle at {x:g}, {y:g}"
+    return f"no way leads to {x:g}, {y:g}, or it is too near to a wall"
+
+
+def tell_outcome(client, x, y):
+    """Log how it ended; True if the goal was reached.  输出结果。"""
+    text = client.get_goal_status_text()
+    rospy.loginfo(text)
+    if "valid plan" in text:
+        try:
+            rospy.loginfo(why_no_plan(rospy.wait_for_message("map", OccupancyGrid, SOON), x, y))
+        except rospy.ROSException:
+            pass  # navigation without a map  没有地图的导航
+    return client.get_state() == GoalStatus.SUCCEEDED
+
+
 def stop_if_driving(client):
     """Stop the car at Ctrl-C.  Ctrl-C 时让小车停下。"""
     if client.get_state() in (GoalStatus.PENDING, GoalStatus.ACTIVE):
@@ -83,8 +119,7 @@ def main():
     client.wait_for_result()
     if rospy.is_shutdown():
         sys.exit("stopped on the way: the goal is cancelled")
-    rospy.loginfo(client.get_goal_status_text())
-    sys.exit(0 if client.get_state() == GoalStatus.SUCCEEDED else 1)
+    sys.exit(0 if tell_outcome(client, x, y) else 1)
 
 
 if __name__ == "__main__":

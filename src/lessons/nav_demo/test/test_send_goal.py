@@ -29,6 +29,25 @@ def test_no_place(script, words):
         script.place_of(words)
 
 
+@pytest.mark.parametrize("word", ["-h", "--help"])
+def test_help(script, word, capsys):
+    with pytest.raises(SystemExit) as end:
+        script.place_of([word])
+    assert end.value.code == 0 and "send_goal.py X Y [DEGREES]" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("place", "why"), [
+    ((30, 0), "30, 0 is off the map, which has x -1.0 to 1.0 m and y -2.0 to -1.0 m"),
+    ((-0.9, -1.9), "the map does not know what is at -0.9, -1.9"),
+    ((-0.1, -1.9), "the map has an obstacle at -0.1, -1.9"),
+    ((0.9, -1.1), "no way leads to 0.9, -1.1, or it is too near to a wall")])
+def test_why_there_is_no_plan(script, place, why):
+    grid = script.OccupancyGrid(data=[-1, 100, 0, 0, 0, 0, 0, 0])
+    grid.info.width, grid.info.height, grid.info.resolution = 4, 2, 0.5
+    grid.info.origin.position.x, grid.info.origin.position.y = -1, -2
+    assert script.why_no_plan(grid, *place) == why
+
+
 def test_ctrl_c_before_there_is_a_clock_asks_nobody_any_more(script, monkeypatch):
     """The master may have ended: whatever asks it then ends with a traceback."""
     monkeypatch.setattr(script.sys, "argv", ["send_goal.py", "1", "1"])
