@@ -41,6 +41,6 @@ setup(
     packages=find_packages("src"),
     package_data={"driving_courses": ["courses/*.yaml"]},
     python_requires=">=3.11",
-    install_requires=["bullet_sim", "car_control", "evaluation", "gymnasium>=1.0,<2", "PyYAML>=6",
-                      "racecar_description"],
+    install_requires=["bullet_sim", "car_control", "evaluation", "gymnasium>=1.0,<2", "node_basics",
+                      "PyYAML>=6", "racecar_description"],
 )

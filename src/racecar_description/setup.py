@@ -8,5 +8,5 @@ setup(
     package_dir={"": "src"},
     packages=find_packages("src"),
     python_requires=">=3.11",
-    install_requires=["numpy", "opencv-python-headless", "PyYAML"],
+    install_requires=["node_basics", "numpy", "opencv-python-headless", "PyYAML"],
 )

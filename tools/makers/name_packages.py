@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Annotated
 from xml.sax.saxutils import escape
 
+from node_basics.records import Must, read_yaml, to_record
+
 from run_session.failure import RunError
-from run_session.records import Must, read_yaml, to_record
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("src/compat", "src/navigation")  # of tables; a learner's package may have a names.yaml
@@ -56,11 +57,12 @@ def files() -> dict[str, bytes]:
     """The files' bytes by path in the repository; RunError names table and key."""
     made: dict[str, bytes] = {}
     for table in tables():
-        groups = read_yaml(table)
+        groups = read_yaml(table, RunError)
         if not isinstance(groups, list) or not all(isinstance(each, dict) for each in groups):
             raise RunError(f"{table}: must be a list of groups of names")
         for values in groups:
-            group = to_record(Names, {"build": [], "run": [], "front": ""} | values, table)
+            group = to_record(Names, {"build": [], "run": [], "front": ""} | values, table,
+                              RunError)
             for name, version in group.names.items():
                 folder = f"{table.parent.relative_to(ROOT)}/names/{name}"
                 if f"{folder}/package.xml" in made:

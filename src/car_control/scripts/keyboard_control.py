@@ -12,8 +12,8 @@ from car_control.key_terminal import run_terminal
 from car_control.keys import Pace, command
 from car_control.master_watch import MasterWatch
 from car_control.node import Ending, read_settings, start_node
-from car_control.settings import bounded
 from geometry_msgs.msg import Twist
+from node_basics.settings import number
 
 FLUSH_TIME = 0.2  # s: rospy's threads need this to send before the process ends
 IN_TERMINAL = "rosrun car_control keyboard_control.py --terminal"
@@ -24,8 +24,8 @@ PAGE = "roslaunch sim_viewer viewer.launch control:=true"
 class KeySettings:
     """Settings of the node key_control."""
 
-    speed: float = bounded(0, 20, "m/s while W or S is held")
-    max_steering_angle: float = bounded(0, 1.2, "rad while A or D is held")
+    speed: float = number(0, 20, "m/s while W or S is held")
+    max_steering_angle: float = number(0, 1.2, "rad while A or D is held")
 
 
 class KeyControl:

@@ -14,9 +14,9 @@ from car_control.images import picture_of
 from car_control.lane.lane_driver import FOLLOWING, SEARCHING, STOPPED, LaneDriver
 from car_control.lane.line_finding import LaneSettings, find_line
 from car_control.node import Ending, read_settings, start_node
-from car_control.settings import checked
 from geometry_msgs.msg import Twist
 from node_basics.reconfigure import serve_settings
+from node_basics.settings import checked
 from sensor_msgs.msg import Image
 
 CHECK_PERIOD = 0.1  # s

@@ -13,9 +13,9 @@ import rospy
 from ackermann_msgs.msg import AckermannDriveStamped
 from car_control.motor import DriveCommand, Motor, MotorSettings, controller_commands
 from car_control.node import Ending, read_settings, start_node
-from car_control.settings import checked
 from geometry_msgs.msg import Twist
 from node_basics.reconfigure import serve_settings
+from node_basics.settings import checked
 from std_msgs.msg import Bool, Float64
 
 WAKE = 0.02  # s, wall: how often to check for a sender's end, whatever the clock does

@@ -12,11 +12,11 @@ from pathlib import Path
 import rospy
 import rostest
 from car_control.lane.line_finding import LaneSettings
-from car_control.settings import load_settings
 from drawn_road import track
 from dynamic_reconfigure.client import Client
 from fake_controllers import LIMIT, wait_until
 from geometry_msgs.msg import Twist
+from node_basics.settings import load_settings
 from sensor_msgs.msg import Image
 from stand_in_camera import StandInCamera
 

@@ -18,8 +18,8 @@ from car_control.lane.lane_driver import (
 )
 from car_control.lane.line_finding import LaneSettings, find_line
 from car_control.motor import MotorSettings
-from car_control.settings import load_settings
 from drawn_road import FRAME, Road, drive, track
+from node_basics.settings import load_settings
 
 CONFIG = Path(__file__).parents[1] / "config"
 SETTINGS = load_settings(LaneSettings, CONFIG / "lane_follow.yaml")

@@ -10,8 +10,8 @@ from unittest.mock import MagicMock
 import pytest
 import rospy
 from car_control.motor import DriveCommand, Motor, MotorSettings, controller_commands
-from car_control.settings import load_settings
 from geometry_msgs.msg import Twist
+from node_basics.settings import load_settings
 
 CONFIG = Path(__file__).parents[1] / "config" / "car_control.yaml"
 SCRIPT = CONFIG.parents[1] / "scripts" / "motor_control.py"
@@ -117,3 +117,10 @@ def test_a_car_that_nobody_started_is_said(monkeypatch):
             for number, heard in enumerate(listeners)}))
     assert said == ["no controller listens to /wheel_0/command: start the car with roslaunch "
                     "racecar_description racecar.launch"]
+
+
+def test_every_table_of_car_control_is_complete_and_explained():
+    # The nodes' own tables are loaded in test_motor.py and by the nodes; here: units are said.
+    text = (Path(__file__).parents[1] / "config" / "car_control.yaml").read_text()
+    keys = [line for line in text.splitlines() if line.startswith("  ")]
+    assert keys and all("#" in line for line in keys)

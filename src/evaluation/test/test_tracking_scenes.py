@@ -23,8 +23,8 @@ from ai_robot_tracking.scenes.scene import (
     draw_start,
 )
 from ai_robot_tracking.scenes.world_file import TARGET, world_name, world_text
-from ai_robot_tracking.settings import load_settings
 from kinematic_tracker import follow
+from node_basics.settings import load_settings
 
 from bullet_sim.actors import pose_at
 from bullet_sim.formats.loading import load_world

@@ -1,6 +1,12 @@
-"""Installs the package through catkin."""
+"""Installs the package's modules with plain pip as well as through catkin."""
 
-from catkin_pkg.python_setup import generate_distutils_setup
-from setuptools import setup
+from setuptools import find_packages, setup
 
-setup(**generate_distutils_setup(packages=["node_basics"], package_dir={"": "src"}))
+setup(
+    name="node_basics",
+    version="0.1.0",
+    package_dir={"": "src"},
+    packages=find_packages("src"),
+    python_requires=">=3.11",
+    install_requires=["numpy", "PyYAML"],
+)

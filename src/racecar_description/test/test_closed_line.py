@@ -32,19 +32,23 @@ corners:
   - {x: -0.5, y: 0.0, radius: 0.9}
 """
 BROKEN = {  # what is replaced in TRACK, by what, and the mistake that is named
-    "missing_key": ("lane_width: 0.296\n", "", "key 'lane_width' is missing"),
+    "missing_key": ("lane_width: 0.296\n", "", "missing key 'lane_width'"),
     "unknown_key": ("size: 4.0", "sizes: 1\nsize: 4.0",
                     "unknown key 'sizes'; there are: name, size"),
     "corner_not_a_number": ("radius: 1.1", "radius: wide",
-                            "corners[4].radius: must be a number up to 10000, is 'wide'"),
+                            "corners[4].radius: must be a number above 0 and up to 10000, is"
+                            " 'wide'"),
     "corner_far_away": ("radius: 1.1", "radius: 42949672955.9",
-                        "corners[4].radius: must be a number up to 10000, is 42949672955.9"),
-    "corner_key_missing": (", radius: 1.1", "", "corners[4]: key 'radius' is missing"),
+                        "corners[4].radius: must be a number above 0 and up to 10000,"
+                        " is 42949672955.9"),
+    "corner_key_missing": (", radius: 1.1", "",
+                           "missing key 'corners[4].radius'; there are: x, y, radius"),
     "bends_overlap": ("radius: 0.6}", "radius: 3.0}", "corners[0] and [1]: the bends overlap by"),
     "start_beside_line": ("[0.0, 0.0]", "[0.0, 0.5]", "start: 0.500 m beside the line"),
-    "negative_width": ("0.019", "-0.019", "line_width: must be more than 0, is -0.019"),
+    "negative_width": ("0.019", "-0.019", "line_width: must be a number above 0 and up to 10000, "
+                       "is -0.019"),
     "no_yaml": (TRACK, "name: [course\n", "not valid YAML: "),
-    "no_mapping": (TRACK, "- just\n- a list\n", "must have the keys name, size"),
+    "no_mapping": (TRACK, "- just\n- a list\n", "missing key 'corners'; there are: name, size"),
 }
 
 

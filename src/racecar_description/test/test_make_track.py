@@ -296,7 +296,7 @@ def test_what_others_made_is_not_overwritten(make_track, tmp_path):
 
 
 @pytest.mark.parametrize("text, message", [
-    ("[", "not valid YAML"), ("name: a", "key 'size' is missing"),
+    ("[", "not valid YAML"), ("name: a", "missing key 'corners'"),
     (RACETRACK.read_text().replace("radius: 1.5}", "radius: 50}"), "bends overlap"),
     (RACETRACK.read_text().replace("start: [0.0, 0.0]", "start: [0.0, 0.5]"), "beside the line"),
     (RACETRACK.read_text() + "colour: red\n", "unknown key 'colour'")])

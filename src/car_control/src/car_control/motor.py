@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from node_basics.settings import explained, number
+
 from car_control.driving.ackermann import CarGeometry, hinge_angles, sharpest_angle, wheel_speeds
-from car_control.settings import bounded, explained
 
 PAGE_WHEEL_GAIN = 8.0  # rad/s of all wheels per unit of linear.x, as in the tutorial
 WHEELS = ("left_rear", "right_rear", "left_front", "right_front")
@@ -21,15 +22,15 @@ class MotorSettings:
 
     namespace: str = explained("of the joint controllers")
     ackermann: bool = explained("an angle and a speed for each wheel; false: the tutorial's law")
-    rate_hz: float = bounded(0, 200, "Hz at which the last command is repeated; 0: never")
-    timeout: float = bounded(0.02, 10, "s without a command after which the car stops")
-    max_speed: float = bounded(0, 20, "m/s")
-    max_steering_angle: float = bounded(0, 1.2, "rad, front wheel of the bicycle model")
-    max_acceleration: float = bounded(0, 100, "m/s^2 when speeding up; 0: no limit")
-    wheelbase: float = bounded(0.01, 10, "m from axle to axle")
-    front_track: float = bounded(0.01, 10, "m between the centres of the front wheels")
-    rear_track: float = bounded(0.01, 10, "m between the centres of the rear wheels")
-    wheel_radius: float = bounded(0.001, 2, "m")
+    rate_hz: float = number(0, 200, "Hz at which the last command is repeated; 0: never")
+    timeout: float = number(0.02, 10, "s without a command after which the car stops")
+    max_speed: float = number(0, 20, "m/s")
+    max_steering_angle: float = number(0, 1.2, "rad, front wheel of the bicycle model")
+    max_acceleration: float = number(0, 100, "m/s^2 when speeding up; 0: no limit")
+    wheelbase: float = number(0.01, 10, "m from axle to axle")
+    front_track: float = number(0.01, 10, "m between the centres of the front wheels")
+    rear_track: float = number(0.01, 10, "m between the centres of the rear wheels")
+    wheel_radius: float = number(0.001, 2, "m")
 
     def __post_init__(self) -> None:
         sharpest = sharpest_angle(self.geometry)

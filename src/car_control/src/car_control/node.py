@@ -11,9 +11,8 @@ from pathlib import Path
 import rospkg
 import rospy
 from node_basics.ending import at_signals
+from node_basics.settings import Settings, SettingsError, load_settings
 from rospy.client import load_command_line_node_params
-
-from car_control.settings import Settings, SettingsError, load_settings
 
 PATIENCE = 3.0  # s, wall, for the last message and for unregistering from the master
 

@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element
 
 import yaml
 from car_control.motor import DriveCommand, MotorSettings, controller_commands
-from car_control.settings import load_settings
+from node_basics.settings import load_settings
 
 from bullet_sim.control.controllers.diff_drive_controller import DiffDrive as ControllerDrive
 from bullet_sim.control.controllers.servo import TYPES as SERVOS

@@ -13,6 +13,7 @@ from gazebo_msgs.srv import GetModelState
 from geometry_msgs.msg import PoseWithCovarianceStamped, Transform
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
 from nav_msgs.msg import Path as PathMessage
+from node_basics.records import Length, Must, are, is_number, load_record
 from sensor_msgs.msg import LaserScan
 from terminal_language import heading
 from tf2_msgs.msg import TFMessage
@@ -21,9 +22,9 @@ from evaluation.trajectory_error import at_moments
 from nav_algorithms.cells import OccupancyGrid
 from nav_algorithms.poses import compose, wrap_angle
 from run_session import simulator
+from run_session.failure import RunError
 from run_session.files import find_package, located
 from run_session.observer import poll
-from run_session.records import Length, Must, are, is_number, load_record
 from run_session.session import StatusLine
 from run_session.simulator import place_of, pose_message, yaw_of
 from trial_worlds.feelers import Feelers, Gap
@@ -68,7 +69,7 @@ class House:
 
 def load_house(name: str) -> House:
     """House `name` of houses/, or the file of that path; RunError names file and key."""
-    return load_record(House, name, find_package("evaluation") / "houses")
+    return load_record(House, name, find_package("evaluation") / "houses", RunError)
 
 
 TOUCHES = 0.005  # m; a smaller gap counts as contact, as poses are sampled at only 25 Hz

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
-from lane_keeping.settings import SettingsError
 from lane_keeping.world.scenery import load_crossings
 from lane_keeping.world.timing import ms_a_frame
+from node_basics.settings import SettingsError
 from racecar_description.track.track_file import load_track_file
 
 from evaluation import lane_encounters, lap_trial

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import rospkg
+from node_basics.records import check_keys, read_yaml
 
 from exercises.finding import CannotCheck
-from run_session.records import check_keys, read_yaml
 
 FILE = "exercises.yaml"
 KEYS = ("title", "start", "solution", "check", "limits")

@@ -21,15 +21,16 @@ from ai_robot_tracking.detection.messages import (
 )
 from ai_robot_tracking.detection.model import Model, ModelError
 from ai_robot_tracking.detection.newest import Newest
-from ai_robot_tracking.detection.settings import FIELDS, read_settings
+from ai_robot_tracking.detection.settings import Settings
 from ai_robot_tracking.parameters import own_parameters
-from ai_robot_tracking.settings import SettingsError
+from node_basics.settings import SettingsError, load_settings
 from sensor_msgs.msg import Image
 from vision_msgs.msg import Detection2DArray, VisionInfo
 
 PACKAGE = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..")
 TEXTS = ("model", "image", "config")
-KEYS = {*FIELDS, *TEXTS, "class_names", "window"}
+NUMBERS = Settings.__dataclass_fields__.keys()
+KEYS = {*NUMBERS, *TEXTS, "class_names", "window"}
 WINDOW = "YOLO Detection"
 COMPLAINT_TIME, SKIP_TIME, QUIET_TIME = 5.0, 5.0, 5.0  # s, wall
 TICK = 0.2  # s, wall: longest wait, so that Ctrl-C works promptly
@@ -132,8 +133,8 @@ def main():
             raise SettingsError(f"'{topic}' cannot be a topic; see: rostopic list")
         config = given.get("config") or os.path.join(PACKAGE, "config/detector_params.yaml")
         path = given.get("model") or os.path.join(PACKAGE, "models/objects.onnx")
-        numbers = {key: given[key] for key in FIELDS if key in given}
-        settings = read_settings(os.path.expanduser(config), numbers)
+        numbers = {key: given[key] for key in NUMBERS if key in given}
+        settings = load_settings(Settings, os.path.expanduser(config), given=numbers)
         model = Model(os.path.expanduser(path), settings.threads)
     except (ModelError, SettingsError) as error:
         rospy.logfatal(str(error))

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import rospy
 from ai_robot_tracking.parameters import read_settings
-from ai_robot_tracking.settings import number
 from geometry_msgs.msg import Twist
+from node_basics.settings import number
 
 RATE_HZ = 10
 PATIENCE = 1.0  # s, wall, in which a running robot connects

@@ -13,8 +13,8 @@ import cv2
 import rospy
 from ai_robot_tracking.parameters import read_settings
 from ai_robot_tracking.red_target import RedSettings, all_red, find_blobs, red_mask
-from ai_robot_tracking.settings import number
 from ai_robot_tracking.tracker_node import TrackerNode
+from node_basics.settings import number
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,8 @@ import pytest
 from ai_robot_tracking.detection.messages import PictureError, annotated, rgb_of
 from ai_robot_tracking.detection.model import Model, ModelError
 from ai_robot_tracking.detection.newest import Newest
-from ai_robot_tracking.detection.settings import names_of_export, read_settings
-from ai_robot_tracking.settings import SettingsError
+from ai_robot_tracking.detection.settings import Settings, names_of_export
+from node_basics.settings import SettingsError, load_settings
 from sensor_msgs.msg import Image
 
 DATA = Path(__file__).resolve().parent / "detection_data"
@@ -69,10 +69,10 @@ def test_a_yaml_beside_the_model_wins(tmp_path):
     ("names: []", "must be a list"),
     ("nc: 3\nnames: [a, b]", "nc is 3, but there are 2 names"),
     ("imgsz: [0, 9]", "imgsz: must be [height, width]"),
-    ("names: [a, b", "cannot be read"),
-    ("names: 2026-13-45", "cannot be read: month must be in 1..12"),
-    ("names: !!timestamp x", "cannot be read"),
-    ("[" * 1000, "cannot be read"),
+    ("names: [a, b", "not valid YAML"),
+    ("names: 2026-13-45", "not valid YAML: month must be in 1..12"),
+    ("names: !!timestamp x", "not valid YAML"),
+    ("[" * 1000, "not valid YAML"),
     ("7", "not a table"),
 ])
 def test_a_wrong_yaml_is_named(text, said, tmp_path):
@@ -163,18 +163,18 @@ def test_a_wrong_picture_is_said(changes, said):
 
 
 def test_settings_come_from_the_file_and_the_node_wins():
-    settings = read_settings(CONFIG, {"confidence": 0.5})
+    settings = load_settings(Settings, CONFIG, given={"confidence": 0.5})
     assert (settings.confidence, settings.iou, settings.threads) == (0.5, 0.45, 1)
 
 
 @pytest.mark.parametrize("change, said", [
     ("confidance: 0.3", "unknown key 'confidance'"),
-    ("confidence: 1.5", "confidence must be a number from 0 to 1, not 1.5"),
-    ("iou: high", "iou must be a number from 0 to 1, not 'high'"),
-    ("threads: 1" + "0" * 400, "threads must be a whole number from 1 to 64"),
-    ("iou: 2026-13-45", "cannot be read: month must be in 1..12"),
-    ("threads: 1.5", "threads must be a whole number from 1 to 64"),
-    ("max_rate: .nan", "max_rate must be a number from 0 to 1000, not nan"),
+    ("confidence: 1.5", "'confidence' must be a number from 0 to 1, not 1.5"),
+    ("iou: high", "'iou' must be a number from 0 to 1, not 'high'"),
+    ("threads: 1" + "0" * 400, "'threads' must be a whole number from 1 to 64"),
+    ("iou: 2026-13-45", "not valid YAML: month must be in 1..12"),
+    ("threads: 1.5", "'threads' must be a whole number from 1 to 64"),
+    ("max_rate: .nan", "'max_rate' must be a number from 0 to 1000, not nan"),
 ])
 def test_wrong_settings_name_file_and_key(change, said, tmp_path):
     path = tmp_path / "detector.yaml"
@@ -182,11 +182,11 @@ def test_wrong_settings_name_file_and_key(change, said, tmp_path):
     lines = [f"{name}: {value}" for name, value in GIVEN.items() if name != key]
     path.write_text("\n".join([*lines, change]))
     with pytest.raises(SettingsError, match=said) as caught:
-        read_settings(path, {})
+        load_settings(Settings, path)
     assert str(path) in str(caught.value)
     path.write_text("iou: 0.4")
     with pytest.raises(SettingsError, match="missing key 'confidence'"):
-        read_settings(path, {})
+        load_settings(Settings, path)
 
 
 def test_only_the_newest_picture_is_taken_and_the_others_are_counted():

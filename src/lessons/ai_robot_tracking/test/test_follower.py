@@ -13,8 +13,8 @@ from ai_robot_tracking.follower import (
     Follower,
     FollowerSettings,
 )
-from ai_robot_tracking.settings import load_settings
 from drawn_room import HFOV, ORANGE, draw_cylinder, room
+from node_basics.settings import load_settings
 
 CONFIG = Path(__file__).resolve().parents[1] / "config" / "tracking_params.yaml"
 SETTINGS = load_settings(FollowerSettings, CONFIG, "visual_tracker_pid", {})

@@ -15,8 +15,8 @@ from ai_robot_tracking.red_target import (
     red_mask,
     split_off,
 )
-from ai_robot_tracking.settings import load_settings
 from drawn_room import HEIGHT, HFOV, ORANGE, RADIUS, SIZE, cylinder, draw_cylinder, room
+from node_basics.settings import load_settings
 from visual_tracker import PageSettings, largest_blob, page_command
 
 NARROW = Colour(175, 5, 120, 18)

@@ -16,7 +16,8 @@ from geometry_msgs.msg import Twist
 from lane_keeping import lane_keeper
 from lane_keeping.annotate import annotate
 from lane_keeping.image_watch import mistake_in, picture_of
-from lane_keeping.settings import SettingsError, load_settings
+from lane_keeping.settings import load_settings
+from node_basics.settings import SettingsError
 from rospy.client import load_command_line_node_params
 from sensor_msgs.msg import Image
 from std_msgs.msg import String

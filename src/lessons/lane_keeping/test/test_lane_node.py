@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from drawn_lane import draw
 from lane_keeping.lane_keeper import LaneKeeper
-from lane_keeping.settings import SettingsError, load_settings
+from lane_keeping.settings import load_settings
+from node_basics.settings import SettingsError
 from sensor_msgs.msg import Image
 
 PACKAGE = Path(__file__).parents[1]

@@ -6,8 +6,9 @@ import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 
+from node_basics.records import read_yaml, to_record
+
 from run_session.failure import RunError
-from run_session.records import read_yaml, to_record
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ class Rules:
 
 def load_rules(path: Path) -> Rules:
     """Read a marking.yaml; RunError names file and key."""
-    rules = to_record(Rules, read_yaml(path), path)
+    rules = to_record(Rules, read_yaml(path, RunError), path, RunError)
     small = [key for key, value in dataclasses.asdict(rules.limits).items() if value <= 0]
     for wrong, what in (
             (len(rules.light) != 2 or not 0 < rules.light[0] <= rules.light[-1],

@@ -9,8 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from node_basics.records import Must, are, is_text, load_record
+
+from run_session.failure import RunError
 from run_session.files import find_package, located
-from run_session.records import Must, are, is_text, load_record
 
 Topics = Annotated[tuple[str, ...], Must("a list of topics", lambda value: are(value, is_text))]
 LaunchFile = Annotated[
@@ -74,7 +76,7 @@ class CourseFile:
 
 def load_course(name: str) -> CourseFile:
     """Course `name` of courses/, or the file at that path; a RunError names file and key."""
-    return load_record(CourseFile, name, find_package("evaluation") / "courses")
+    return load_record(CourseFile, name, find_package("evaluation") / "courses", RunError)
 
 
 def drivers(course: CourseFile) -> list[str]:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from node_basics.records import read_yaml
+
+from run_session.failure import RunError
 from run_session.files import find_package
-from run_session.records import read_yaml
 from sim_bench.figures import Figure
 
 
@@ -56,7 +58,7 @@ class Verdict:
 
 def criteria() -> list[Criterion]:
     """All rows, in the order in which they are printed."""
-    rows = read_yaml(find_package("sim_bench") / "acceptance.yaml")
+    rows = read_yaml(find_package("sim_bench") / "acceptance.yaml", RunError)
     return [Criterion(**{**row, "bound_by": tuple(row.get("bound_by", ()))}) for row in rows]
 
 

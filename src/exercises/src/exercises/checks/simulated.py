@@ -9,7 +9,6 @@ from typing import Any
 
 import cv2
 import numpy as np
-import yaml
 from driving_courses.course import load_course
 from driving_courses.drives import RacecarDrive
 from driving_courses.packages import find_file
@@ -21,6 +20,7 @@ from lane_keeping.binarise import opening, region
 from lane_keeping.methods.sliding_windows import plan
 from lane_keeping.road_view import RoadView, road_view
 from lane_keeping.settings import load_settings
+from node_basics.records import read_yaml
 from racecar_description.track.closed_line import Track, load_track
 
 from bullet_sim.errors import SimulationError
@@ -132,11 +132,7 @@ MOST_GAIN = 1e9  # of P, I and D
 
 def read(file: Path) -> None:
     """CannotCheck if it is not YAML; Mistake if a required setting is missing or wrong."""
-    try:
-        table = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
-        raise CannotCheck(f"{file}: not valid YAML: {' '.join(str(error).split())[:200]}") \
-            from error
+    table = read_yaml(file, CannotCheck)
     if not isinstance(table, dict) or not isinstance(table.get("racecar"), dict):
         raise Mistake(f"{file}: its first key must be `racecar`, with controllers below it")
     for name, entry in table["racecar"].items():

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from node_basics.settings import number
 
 from ai_robot_tracking.red_target import (
     Blob,
@@ -17,7 +18,6 @@ from ai_robot_tracking.red_target import (
     red_mask,
     split_off,
 )
-from ai_robot_tracking.settings import number
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,8 @@ import rospkg
 import rospy
 from dynamic_reconfigure.server import Server
 from node_basics.reconfigure import serve_settings
+from node_basics.settings import Settings, SettingsError, checked, load_settings
 from rospy.client import load_command_line_node_params
-
-from ai_robot_tracking.settings import Settings, SettingsError, checked, load_settings
 
 
 def own_parameters() -> dict[str, object]:
@@ -50,5 +49,4 @@ def read_settings(kind: type[Settings], section: str) -> Settings:
 
 def offer_settings(settings: Settings, apply: Callable[[Settings], None]) -> Server:
     """Offer all numbers; `apply` gets them now and after each change, in ROS's threads."""
-    return serve_settings(settings, lambda entry, value, where: checked(
-        entry, value, f"{where}: '{entry.name}'"), apply)
+    return serve_settings(settings, checked, apply)

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-
-from ai_robot_tracking.settings import number
+from node_basics.settings import number
 
 KERNEL = np.ones((3, 3), np.uint8)
 PASSES = 2  # of erosion, then of dilation, to remove specks

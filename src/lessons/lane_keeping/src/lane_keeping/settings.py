@@ -2,33 +2,12 @@
 
 from __future__ import annotations
 
-import reprlib
 from collections.abc import Mapping
-from dataclasses import Field, dataclass, field, fields
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-import yaml
-
-
-class SettingsError(Exception):
-    """One line that names the file (or parameters), the key, and the error."""
-
-
-def number(low: float, high: float, meaning: str) -> Any:
-    """A float within these bounds; the meaning has its unit."""
-    return field(metadata={"low": low, "high": high, "meaning": meaning})
-
-
-def count(low: int, high: int, meaning: str) -> Any:
-    """A whole number within these bounds."""
-    return field(metadata={"low": low, "high": high, "meaning": meaning, "whole": True})
-
-
-def choice(*names: str) -> Any:
-    """One of these words."""
-    return field(metadata={"names": names, "meaning": "one of " + ", ".join(names)})
-
+from node_basics import settings
+from node_basics.settings import choice, count, number
 
 METHODS = (
     "sliding_windows", "banded_centroids", "column_scan", "histogram_peaks", "segmented_hough",
@@ -96,51 +75,4 @@ def load_settings(path: str | Path, given: Mapping[str, object] | None = None) -
 
     Any error is a SettingsError.
     """
-    values = read_table(Path(path))
-    known = {entry.name: entry for entry in fields(Settings)}
-    result: dict[str, object] = {}
-    for where, table in ((str(path), values), ("the node's parameters", given or {})):
-        for key, value in table.items():
-            if key not in known:
-                raise SettingsError(f"{where}: unknown key {key!r:.80}; known: {', '.join(known)}")
-            result[key] = _checked(known[key], value, where)
-    for key in known:
-        if key not in values:
-            raise SettingsError(f"{path}: missing key '{key}'")
-    try:
-        return Settings(**result)
-    except ValueError as error:
-        raise SettingsError(f"{path} and the node's parameters: {error}") from error
-
-
-def _checked(entry: Field, value: object, where: str) -> object:
-    """The value as this field's type; SettingsError if it is invalid."""
-    rule, given = entry.metadata, reprlib.repr(value)[:80]
-    if "names" in rule:
-        if value not in rule["names"]:
-            raise SettingsError(
-                f"{where}: '{entry.name}' must be {rule['meaning']}, not {given}"
-            )
-        return value
-    whole, low, high = rule.get("whole", False), rule["low"], rule["high"]
-    fits = isinstance(value, int if whole else int | float) and not isinstance(value, bool)
-    if not (fits and low <= value <= high):
-        kind = "whole number" if whole else "number"
-        raise SettingsError(
-            f"{where}: '{entry.name}' must be a {kind} from {low:g} to {high:g}, not {given}"
-        )
-    return value if whole else float(value)
-
-
-def read_table(path: Path) -> dict:
-    """The `key: value` lines of a YAML file; SettingsError if it is invalid."""
-    try:
-        values = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise SettingsError(f"{path}: {error.strerror}") from error
-    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
-        raise SettingsError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") \
-            from error
-    if not isinstance(values, dict):
-        raise SettingsError(f"{path}: not a table of 'key: value' lines")
-    return values
+    return settings.load_settings(Settings, path, given=given)

@@ -5,23 +5,36 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from node_basics.records import Must, is_number
 
 from racecar_description.track.errors import TrackError
 
 STRAIGHT = 1e-9  # rad and m: below this there is no bend, and no piece
 LEAST_CURVATURE = 1e-12  # 1/m
+MOST = 1e4  # m, of any number; on a line of millions of km a nearest-point search takes minutes
 SPACING = 0.02  # m, between the points that represent the line in drawings and checks
+
+
+def is_coordinate(value: object) -> bool:
+    """Whether it is a number from -MOST to MOST."""
+    return is_number(value, -MOST, MOST)
+
+
+Coordinate = Annotated[float, Must(f"a number up to {MOST:g}", is_coordinate)]
+Size = Annotated[float, Must(f"a number above 0 and up to {MOST:g}",
+                             lambda value: is_coordinate(value) and value > 0)]
 
 
 @dataclass(frozen=True)
 class Corner:
     """One corner of the polygon that the line follows, rounded by an arc of this radius."""
 
-    x: float
-    y: float
-    radius: float
+    x: Coordinate
+    y: Coordinate
+    radius: Size
 
 
 @dataclass(frozen=True)

@@ -3,46 +3,46 @@
 from __future__ import annotations
 
 import math
-import reprlib
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Annotated
 
-import yaml
 from node_basics.bounded_yaml import BoundedLoader
+from node_basics.records import Must, are, read_yaml, to_record
 
-from racecar_description.track.centre_line import CentreLine, Corner
+from racecar_description.track.centre_line import (
+    CentreLine,
+    Coordinate,
+    Corner,
+    Size,
+    is_coordinate,
+)
 from racecar_description.track.errors import TrackError
 
-MOST = 1e4  # m, of any number; on a line of millions of km a nearest-point search takes minutes
+Name = Annotated[str, Must("a text", lambda value: not isinstance(value, list | dict))]
+Place = Annotated[tuple[float, float], Must("[x, y]", lambda value: are(value, is_coordinate, 2))]
 
 
 @dataclass(frozen=True)
 class TrackFile:
     """A track's YAML, key by key; m, in the world frame; driven in the order of the corners."""
 
-    name: str
-    size: float  # the longer side of the plane that the course is painted on
-    model_yaw: float  # rad, the plane's yaw in the world file
-    line_width: float  # of the painted line
-    lane_width: float  # from the middle of that line to the middle of the lane's other line
-    start: tuple[float, float]  # where laps start, on the line
+    name: Name
+    size: Size  # the longer side of the plane that the course is painted on
+    model_yaw: Coordinate  # rad, the plane's yaw in the world file
+    line_width: Size  # of the painted line
+    lane_width: Size  # from the middle of that line to the middle of the lane's other line
+    start: Place  # where laps start, on the line
     corners: tuple[Corner, ...]  # of the line
 
 
 def load_track_file(path: str | Path) -> TrackFile:
     """Read and check a track file; an error is a TrackError that names file and key."""
     path = Path(path)
-    try:
-        values = yaml.load(path.read_text(encoding="utf-8"), BoundedLoader)
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "not a text file"
-        raise TrackError(f"{path}: {reason}") from error
-    except Exception as error:  # PyYAML also raises KeyError, IndexError and more
-        raise TrackError(f"{path}: not valid YAML: {' '.join(str(error).split())[:200]}") from error
-    try:
-        return _track_file(values)
-    except TrackError as error:
-        raise TrackError(f"{path}: {error}") from error
+    track = to_record(TrackFile, read_yaml(path, TrackError, BoundedLoader), path, TrackError)
+    if len(track.corners) < 3:
+        raise TrackError(f"{path}: corners: at least three are needed")
+    return replace(track, name=str(track.name))
 
 
 def load_centre_line(path: Path) -> tuple[TrackFile, CentreLine]:
@@ -56,36 +56,6 @@ def load_centre_line(path: Path) -> tuple[TrackFile, CentreLine]:
     return track, line
 
 
-def _track_file(values: object) -> TrackFile:
-    _check_keys("", values, TrackFile)
-    corners = values["corners"]
-    if not isinstance(corners, list) or len(corners) < 3:
-        raise TrackError("corners: at least three are needed, as a list")
-    start = values["start"]
-    if not isinstance(start, list) or len(start) != 2:
-        raise TrackError(f"start: must be [x, y], is {_shown(start)}")
-    return TrackFile(
-        name=_name(values["name"]),
-        size=_number("size", values["size"], positive=True),
-        model_yaw=_number("model_yaw", values["model_yaw"]),
-        line_width=_number("line_width", values["line_width"], positive=True),
-        lane_width=_number("lane_width", values["lane_width"], positive=True),
-        start=(_number("start[0]", start[0]), _number("start[1]", start[1])),
-        corners=tuple(_corner(f"corners[{i}]", item) for i, item in enumerate(corners)),
-    )
-
-
-def _name(value: object) -> str:
-    if isinstance(value, list | dict):
-        raise TrackError(f"name: must be text, is {_shown(value)}")
-    return str(value)
-
-
-def _shown(value: object) -> str:
-    """A value for a message; expanded YAML aliases can be a billion times as long as the file."""
-    return reprlib.repr(value)[:80]
-
-
 def _check_start(track: TrackFile, line: CentreLine) -> None:
     x, y, _ = line.pose(line.nearest(*track.start))
     beside = math.hypot(x - track.start[0], y - track.start[1])
@@ -93,36 +63,6 @@ def _check_start(track: TrackFile, line: CentreLine) -> None:
         raise TrackError(
             f"start: {beside:.3f} m beside the line; its nearest point is [{x:.9f}, {y:.9f}]"
         )
-
-
-def _corner(place: str, values: object) -> Corner:
-    _check_keys(place, values, Corner)
-    return Corner(
-        x=_number(f"{place}.x", values["x"]),
-        y=_number(f"{place}.y", values["y"]),
-        radius=_number(f"{place}.radius", values["radius"], positive=True),
-    )
-
-
-def _check_keys(place: str, values: object, schema: type) -> None:
-    expected = [field.name for field in fields(schema)]
-    where = f"{place}: " if place else ""
-    if not isinstance(values, dict):
-        raise TrackError(f"{where}must have the keys {', '.join(expected)}")
-    for key in values:
-        if key not in expected:
-            raise TrackError(f"{where}unknown key {_shown(key)}; there are: {', '.join(expected)}")
-    for key in expected:
-        if key not in values:
-            raise TrackError(f"{where}key {key!r} is missing")
-
-
-def _number(place: str, value: object, positive: bool = False) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= MOST:
-        raise TrackError(f"{place}: must be a number up to {MOST:g}, is {_shown(value)}")
-    if positive and value <= 0:
-        raise TrackError(f"{place}: must be more than 0, is {_shown(value)}")
-    return float(value)
 
 
 def track_text(track: TrackFile, source: str) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import onnxruntime
+from node_basics.settings import SettingsError
 
 from ai_robot_tracking.detection.decoding import (
     PADDING,
@@ -23,7 +24,6 @@ from ai_robot_tracking.detection.settings import (
     read_sidecar,
     size_of_export,
 )
-from ai_robot_tracking.settings import SettingsError
 
 USUAL_SIZE = (640, 640)  # px, if neither model nor YAML file gives a size
 LARGEST_FILE = 1 << 30  # bytes

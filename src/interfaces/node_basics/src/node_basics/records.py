@@ -1,4 +1,7 @@
-"""Dataclasses from YAML files that hold exactly their fields; an error names file and key."""
+"""Dataclasses from YAML files that hold exactly their fields; an error names file and key.
+
+`fault`, an exception, is what a reader's caller expects: it is raised with one line.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +14,8 @@ from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
 import yaml
 
-from run_session.failure import RunError
-
 T = TypeVar("T")
+Fault = Callable[[str], Exception]
 
 
 @dataclass(frozen=True)
@@ -24,9 +26,9 @@ class Must:
     fits: Callable[[Any], bool]
 
 
-def is_number(value: object, least: float = 0.0) -> bool:
-    """Whether it is a finite number of at least this."""
-    return type(value) in (int, float) and least <= value < math.inf
+def is_number(value: object, least: float = 0.0, most: float = math.inf) -> bool:
+    """Whether it is a finite number within these bounds."""
+    return type(value) in (int, float) and least <= value <= most and abs(value) < math.inf
 
 
 def are(value: object, fits: Callable[[Any], bool], count: int | None = None) -> bool:
@@ -46,8 +48,10 @@ def is_whole(value: object) -> bool:
 
 # 0 makes no sense for a Length.
 Length = Annotated[float, Must("a number above 0", lambda value: is_number(value) and value > 0)]
+Anywhere = Annotated[float, Must("a number", lambda value: is_number(value, -math.inf))]
 MUST = {
     str: Must("a text", is_text),
+    bool: Must("true or false", lambda value: isinstance(value, bool)),
     int: Must("a whole number, 0 or more", is_whole),
     float: Must("a number, 0 or more", is_number),
     tuple[str, ...]: Must("a list of texts", lambda value: are(value, is_text)),
@@ -56,10 +60,10 @@ MUST = {
 }
 
 
-def read_yaml(path: Path, fault: type[Exception] = RunError) -> Any:
-    """The content of a YAML file; `fault` says in one line why there is none."""
+def read_yaml(path: Path, fault: Fault, loader: type[yaml.SafeLoader] = yaml.SafeLoader) -> Any:
+    """The content of a YAML file; `fault` says why there is none."""
     try:
-        return yaml.safe_load(path.read_text(encoding="utf-8"))
+        return yaml.load(path.read_text(encoding="utf-8"), loader)
     except OSError as error:
         raise fault(f"{path}: {error.strerror}") from error
     except UnicodeDecodeError as error:
@@ -76,8 +80,8 @@ def yaml_fault(error: Exception) -> str:
     return " ".join(str(error).split())[:200]
 
 
-def check_keys(place: object, values: object, expected: Iterable[str],
-               fault: type[Exception] = RunError, within: str = "") -> None:
+def check_keys(place: object, values: object, expected: Iterable[str], fault: Fault,
+               within: str = "") -> None:
     """`fault` unless `values` has exactly the keys; `within` stands before a key in the message."""
     given = set(values) if isinstance(values, dict) else set()
     for what, keys in (("unknown", given - set(expected)), ("missing", set(expected) - given)):
@@ -87,32 +91,42 @@ def check_keys(place: object, values: object, expected: Iterable[str],
                         f"are: {', '.join(expected)}")
 
 
-def to_record(kind: type[T], values: object, place: object, within: str = "") -> T:
-    """An instance of the dataclass `kind`, whose fields may be dataclasses; `place`: the file."""
-    check_keys(place, values, [field.name for field in fields(kind)], within=within)
-    found = {}
-    for name, wanted in get_type_hints(kind, include_extras=True).items():
-        value, key = values[name], f"{within}{name}"
-        if is_dataclass(wanted):
-            found[name] = to_record(wanted, value, place, f"{key}.")
-            continue
-        own = get_args(wanted)[1:] if get_origin(wanted) is Annotated else ()
-        must = own[-1] if own else MUST[wanted]
-        if not must.fits(value):
-            raise RunError(f"{place}: {key}: must be {must.be}, is {reprlib.repr(value)[:80]}")
-        found[name] = _frozen(value)
-    return kind(**found)
+def to_record(kind: type[T], values: object, place: object, fault: Fault, within: str = "") -> T:
+    """An instance of the dataclass `kind`; `place`: the file.
+
+    Fields may be dataclasses, or tuples of any number of one.
+    """
+    check_keys(place, values, [field.name for field in fields(kind)], fault, within)
+    return kind(**{name: _value(wanted, values[name], place, fault, f"{within}{name}")
+                   for name, wanted in get_type_hints(kind, include_extras=True).items()})
 
 
-def load_record(kind: type[T], name: str, folder: Path) -> T:
+def _value(wanted: Any, value: object, place: object, fault: Fault, key: str) -> Any:
+    """The value as the type `wanted` of a field."""
+    if is_dataclass(wanted):
+        return to_record(wanted, value, place, fault, f"{key}.")
+    if get_origin(wanted) is tuple and is_dataclass(part := get_args(wanted)[0]):
+        if not isinstance(value, list):
+            keys = ", ".join(field.name for field in fields(part))
+            raise fault(f"{place}: {key}: must be a list of {{{keys}}}")
+        return tuple(to_record(part, each, place, fault, f"{key}[{number}].")
+                     for number, each in enumerate(value))
+    kind, must = (get_args(wanted)[0], get_args(wanted)[-1]) \
+        if get_origin(wanted) is Annotated else (wanted, MUST[wanted])
+    if not must.fits(value):
+        raise fault(f"{place}: {key}: must be {must.be}, is {reprlib.repr(value)[:80]}")
+    return float(value) if kind is float else _frozen(value)
+
+
+def _frozen(value: object) -> object:
+    return tuple(map(_frozen, value)) if isinstance(value, list) else value
+
+
+def load_record(kind: type[T], name: str, folder: Path, fault: Fault) -> T:
     """An instance of dataclass `kind` from NAME.yaml of a folder, or from the file of that path."""
     path = Path(name) if name.endswith(".yaml") else folder / f"{name}.yaml"
     if not name.endswith(".yaml") and not path.exists():
         known = ", ".join(sorted(found.stem for found in folder.glob("*.yaml")))
         what = folder.name[:-1]
-        raise RunError(f"no {what} {name!r} (--{what}); there are: {known}")
-    return to_record(kind, read_yaml(path), path)
-
-
-def _frozen(value: object) -> object:
-    return tuple(map(_frozen, value)) if isinstance(value, list) else value
+        raise fault(f"no {what} {name!r} (--{what}); there are: {known}")
+    return to_record(kind, read_yaml(path, fault), path, fault)
