@@ -12,7 +12,7 @@ import yaml
 from car_control.motor import DriveCommand, MotorSettings, controller_commands
 from node_basics.settings import load_settings
 
-from bullet_sim.control.controllers.diff_drive_controller import DiffDrive as ControllerDrive
+from bullet_sim.control.controllers.diff_drive_controller import DiffDriveLaw
 from bullet_sim.control.controllers.servo import TYPES as SERVOS
 from bullet_sim.control.controllers.servo import Servo
 from bullet_sim.control.hardware import open_hardware
@@ -108,7 +108,7 @@ class DiffDriveController(ControlledDrive):
         super().__init__(world, robot, urdf, parameters)
         found = next(each for each in parameters.groups().values()
                      if each.text("type", "") == "diff_drive_controller/DiffDriveController")
-        self._base = ControllerDrive.from_parameters(
+        self._base = DiffDriveLaw.from_parameters(
             found, self._facts, self._hardware.command_handle)
         self._base.start(world.time)
 

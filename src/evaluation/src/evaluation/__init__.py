@@ -1,1 +1,1 @@
-"""Courses, and the trials that drive on them and score the drives."""
+"""Courses, and the trials that drive on them and score the drives; `start.py` lists them."""

@@ -9,7 +9,7 @@ from bullet_sim.control.controllers.ackermann_steering_controller import (
     AckermannSteering,
 )
 from bullet_sim.control.controllers.commands import TimedCommand
-from bullet_sim.control.controllers.diff_drive_controller import DiffDrive, DiffDriveGeometry
+from bullet_sim.control.controllers.diff_drive_controller import DiffDriveGeometry, DiffDriveLaw
 from bullet_sim.control.controllers.four_wheel_steering_controller import (
     FourWheelGeometry,
     FourWheelSteering,
@@ -147,7 +147,7 @@ def test_a_reset_of_time_is_no_way():
 
 def diff_drive(options: BaseOptions = BaseOptions(), right_radius: float = 0.05):
     left, right = [handle("l1"), handle("l2")], [handle("r1"), handle("r2")]
-    base = DiffDrive(left, right, DiffDriveGeometry(0.3, 0.05, right_radius), options)
+    base = DiffDriveLaw(left, right, DiffDriveGeometry(0.3, 0.05, right_radius), options)
     for made in (*left, *right):
         made.joint.position = 7.0  # the wheels have turned before
     base.start(0.0)

@@ -1,1 +1,4 @@
-"""One module for each check: look(file, limits) yields its findings."""
+"""The checks, as functions NAME(file, limits) that yield findings, in modules by what they run.
+
+`exercises.catalogue` names each check with its module (MODULES) and its limits (CHECKS).
+"""

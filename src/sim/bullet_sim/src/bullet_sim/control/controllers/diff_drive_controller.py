@@ -30,7 +30,7 @@ class DiffDriveGeometry:
         check_lengths(self, "wheel_separation", "left_radius", "right_radius")
 
 
-class DiffDrive(MobileBase):
+class DiffDriveLaw(MobileBase):
     """`turning` is the yaw rate (rad/s). All wheels of a side get the same velocity."""
 
     def __init__(self, left: Sequence[CommandHandle], right: Sequence[CommandHandle],
@@ -42,7 +42,8 @@ class DiffDrive(MobileBase):
         self._travelled = (0.0, 0.0)
 
     @classmethod
-    def from_parameters(cls, p: ControllerParameters, robot: RobotFacts, claim: Claim) -> DiffDrive:
+    def from_parameters(cls, p: ControllerParameters, robot: RobotFacts,
+                        claim: Claim) -> DiffDriveLaw:
         """Of diff_drive_controller; the first wheel of each side stands for the others.
 
         PluginError for a parameter that is wrong, SimulationError for a length that is not above 0.

@@ -7,7 +7,7 @@ from control_msgs.msg import JointTrajectoryControllerState
 from geometry_msgs.msg import TwistStamped
 from trajectory_msgs.msg import JointTrajectoryPoint
 
-from bullet_sim.control.controllers.diff_drive_controller import DiffDrive
+from bullet_sim.control.controllers.diff_drive_controller import DiffDriveLaw
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controllers.mobile_bases import MobileBaseController
@@ -22,7 +22,7 @@ RATES = (0.0, 2000.0)  # Hz
 class DiffDriveController(MobileBaseController):
     """Multipliers of separation and radii can be changed by dynamic_reconfigure."""
 
-    law = DiffDrive
+    law = DiffDriveLaw
 
     def __init__(self, context: ControllerContext):
         super().__init__(context)
@@ -68,7 +68,7 @@ class DiffDriveController(MobileBaseController):
 class WheelStates:
     """Publishes desired and actual state and their difference for each wheel, left ones first."""
 
-    def __init__(self, context: ControllerContext, drive: DiffDrive):
+    def __init__(self, context: ControllerContext, drive: DiffDriveLaw):
         self._drive = drive
         self._handles = (*drive.left, *drive.right)
         self._topic = context.advertise("wheel_joint_controller_state",
