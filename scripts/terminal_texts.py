@@ -174,7 +174,7 @@ def _shows_docstring(tree: ast.Module) -> bool:
 
 
 def is_door(node: ast.AST) -> bool:
-    """Whether a statement or call shows its texts to somebody."""
+    """Whether a statement or call shows its texts to the user."""
     if isinstance(node, ast.Raise):
         return True
     if isinstance(node, ast.keyword):
@@ -294,7 +294,7 @@ def kept() -> list[str]:
 
 
 def shell_texts() -> dict[str, list[str]]:
-    """The same of the scripts: what stands there as $"...", and the Makefile's list of commands."""
+    """The shell scripts' texts, written as $"...", and the Makefile's list of commands."""
     found: dict[str, list[str]] = {}
     for path in (*sorted(ROOT.glob("scripts/*.sh")), *sorted(ROOT.glob("scripts/setup/*.sh"))):
         told = subprocess.run(["bash", "--dump-po-strings", str(path)], capture_output=True,

@@ -67,7 +67,7 @@ def film_pages(path: Path) -> Iterator[np.ndarray]:
 
 
 def outside_views(path: Path, count: int) -> Iterator[np.ndarray]:
-    """So many moments of a run from outside, as its page shows them, BGR."""
+    """`count` moments of a run from outside, as its page shows them, BGR."""
     import chromium  # of the path above
 
     browser = chromium.Browser()

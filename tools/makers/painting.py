@@ -134,7 +134,7 @@ def bend(before: Point, corner: Point, after: Point, radius: float) -> list[Poin
 
 
 def beside(points: Sequence[Point], left: float) -> list[Point]:
-    """The same way, so many metres to the left (negative: to the right)."""
+    """The same way, `left` m to the left (negative: to the right)."""
     moved = []
     for i, point in enumerate(points):
         before, after = points[max(i - 1, 0)], points[min(i + 1, len(points) - 1)]

@@ -194,7 +194,7 @@ def windows(axes):
 
 
 def distance(axes):
-    """The tracker: how far away a cylinder of so many px is, by its height and by its width."""
+    """The tracker: distance of a cylinder over its size in px, by its height and by its width."""
     away, seen = np.arange(0.8, 5.01, 0.2), []
     for each in away:
         picture = laws.view(each, 0.0)

@@ -2,4 +2,4 @@
 
 
 class CourseError(ValueError):
-    """One line that says what is wrong and what there is instead."""
+    """One line that says what is wrong and which values are possible."""

@@ -119,7 +119,7 @@ class Simulation:
 
 
 def _open_renderer(pixels: int) -> Renderer:
-    """For pictures of so many pixels.
+    """A renderer for pictures of `pixels` pixels.
 
     CourseError in a process that was forked from one that draws: OpenGL would wait for ever.
     """

@@ -38,7 +38,7 @@ class Task(Protocol):
         """Reward for the way since the last sample, and whether the episode has ended."""
 
     def report(self) -> dict[str, Any]:
-        """How the drive stands, in the words of the trials' report.json."""
+        """The drive's result so far, with the keys of the trials' report.json."""
 
 
 class LapTask:

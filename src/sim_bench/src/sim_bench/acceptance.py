@@ -1,4 +1,4 @@
-"""Whether the figures are what acceptance.yaml says, and what binds those that are not."""
+"""Compares the figures with acceptance.yaml, and names the bottleneck of those that miss it."""
 
 from __future__ import annotations
 

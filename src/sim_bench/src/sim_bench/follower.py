@@ -76,7 +76,7 @@ class Follower:
 
 
 def launch_course(run: RosRun, *arguments: str) -> Child:
-    """0course.launch without a screen; returns when the waffle stands in it."""
+    """Start 0course.launch without a screen; returns when the waffle is in the world."""
     launched = run.launch(*COURSE_LAUNCH, *arguments)
     run.wait(lambda: simulator.WAFFLE in simulator.models(), f"model {simulator.WAFFLE}")
     return launched

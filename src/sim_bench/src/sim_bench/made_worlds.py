@@ -35,7 +35,7 @@ class MadeWorld:
 
 
 def signs(folder: Path, triangles: int) -> MadeWorld:
-    """A road with twelve signs of so many triangles together, and a camera before them."""
+    """A road with twelve signs, of `triangles` triangles in all, and a camera before them."""
     each = triangles // SIGNS
     write_stl(folder / "sign.stl", [_turned_on_a_lathe(round(each * ROUND)),
                                     _plate(round(each * PLATE))])
@@ -110,7 +110,7 @@ def _rough_floor(triangles: int) -> Surface:
 
 
 def _square(triangles: int, wide: float) -> list[np.ndarray]:
-    """Both coordinates (m) of a grid around 0, the first along its rows, of so many triangles."""
+    """Both coordinates (m) of a grid of `triangles` around 0, the first along its rows."""
     return np.meshgrid(*[np.linspace(-wide / 2, wide / 2, math.isqrt(triangles // 2) + 1)] * 2,
                        indexing="ij")
 

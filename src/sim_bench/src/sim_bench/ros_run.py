@@ -90,7 +90,7 @@ class RosRun(Launched):
             self.end(child, END_LIMIT)
 
     def windows(self, count: int, length: float, warm_up: float) -> list[Window]:
-        """After `warm_up` so many windows of wall time (s), one after the other.
+        """After `warm_up` s, `count` windows of `length` s of wall time, one after the other.
 
         Fewer and shorter ones in a quick pass.
         """

@@ -126,7 +126,7 @@ class Spawner:
         rospy.logerr(f"Failed to start controllers: {names}: {reason}")
 
     def _stop(self) -> bool:
-        """Whether the manager goes on; after Ctrl-C it refuses, as its world ends as well."""
+        """Whether the manager stopped them; after Ctrl-C it refuses, as its world ends as well."""
         rospy.loginfo("Stopping all controllers...")
         running = [state.name for state in self._manager.controllers()
                    if state.name in self._mine and state.state == "running"]

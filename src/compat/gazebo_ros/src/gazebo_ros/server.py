@@ -26,9 +26,9 @@ def parser(program: str) -> argparse.ArgumentParser:
     result.add_argument("--verbose", action="store_true", help="log more")
     result.add_argument("-u", "--pause", action="store_true", help="start paused")
     result.add_argument("-e", "--physics", default="ode", help="physics engine")
-    result.add_argument("--seed", metavar="N", help="of everything random")
+    result.add_argument("--seed", metavar="N", help="seed of all random numbers")
     result.add_argument("--real_time_factor", metavar="F",
-                        help="1: real time, 0: as fast as it goes (of our own)")
+                        help="1: real time, 0: no limit; not an option of Gazebo's")
     result.add_argument("--initial_sim_time", metavar="S", help="time to start at, s")
     result.add_argument("--iters", metavar="N", help="stop after N steps")
     unused = result.add_argument_group("accepted, no effect")

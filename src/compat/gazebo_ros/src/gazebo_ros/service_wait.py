@@ -37,7 +37,7 @@ def _name_others(service: str) -> None:
 
 
 def _is_missing(master: rosgraph.Master, name: str) -> bool:
-    """Whether the master says so; where it says nothing, rospy has the words for it."""
+    """Whether the master knows no such service; if it cannot be asked, rospy reports that later."""
     try:
         master.lookupService(name)
     except rosgraph.MasterException:

@@ -45,7 +45,7 @@ class ScanFilter(Protocol):
     """One filter of a chain: a dataclass whose fields are upstream's parameters."""
 
     def filtered(self, scan: Scan, points_in: PointsIn) -> Scan:
-        """The scan that goes on to the next one."""
+        """The scan that the next filter gets."""
 
 
 class Observations:

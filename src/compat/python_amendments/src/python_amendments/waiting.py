@@ -292,7 +292,7 @@ def tell_of_action(space):
 
 
 def tell_of_frames(buffer, frames):
-    """Log which of them nobody publishes; a parent comes with its child, of which more is known."""
+    """Log the frames that nobody publishes; only those with a command to start them, if any is."""
     lines = [missing(NO_FRAME, frame) for frame in sorted(frames) if not buffer._frameExists(frame)]
     known = [line for line in lines if line[0] == NO_FRAME[0]]
     for line in [] if says_it_itself() else known or lines:

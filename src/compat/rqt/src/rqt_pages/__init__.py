@@ -1,1 +1,1 @@
-"""What stands where rqt's windows would: the page in the browser, or a command."""
+"""rqt's tools without windows: each names the browser page or the command that replaces it."""

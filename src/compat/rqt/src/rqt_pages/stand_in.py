@@ -60,8 +60,8 @@ def window(tool: str, program: str, arguments: Sequence[str]) -> int:
 def main(tool: str, arguments: Sequence[str]) -> int:
     """Print the line; returns 1, as there is no window.
 
-    A node of a launch file waits until it is ended, lest a `required` one ends the launch; that it
-    was told to end is no failure, so it returns 0.
+    As a node of a launch file it waits until it is ended, and returns 0: if it ended at once, a
+    `required` node would end the launch.
     """
     print(line_for(tool, arguments), file=sys.stderr, flush=True)
     if not any(word.startswith("__name:=") for word in arguments):

@@ -87,7 +87,7 @@ class Catalogue:
 
     def __init__(self, messages: dict[str, str]) -> None:
         self._exact = {english: text for english, text in messages.items() if english and text}
-        for english, text in tuple(self._exact.items()):  # also what stands behind a joint
+        for english, text in tuple(self._exact.items()):  # also the part behind a joint
             if english.startswith("; "):
                 self._exact.setdefault(english[2:], text.lstrip("；; "))
         sentences = (Sentence(*both) for both in self._exact.items() if PLACE.search(both[0]))

@@ -12,7 +12,7 @@ def width(text: str) -> int:
 
 
 def cut(text: str, cells: int) -> str:
-    """The text's beginning that fits into so many cells."""
+    """The longest beginning of the text that fits into `cells` cells of a terminal."""
     return text[:sum(end <= cells for end in accumulate(map(_cells, text)))]
 
 

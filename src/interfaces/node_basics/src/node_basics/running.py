@@ -12,7 +12,9 @@ def simulators(service: str = "spawn_urdf_model") -> list[str]:
 
 
 def offering(ending: str) -> list[str]:
-    """What comes before this ending in the names of services.
+    """The names that stand before `ending` in the services' names.
+
+    `/gazebo` for `/gazebo/spawn_sdf_model` and the ending `/spawn_sdf_model`.
 
     The master still lists those of a node that was killed; nobody listens at its port.
     """
@@ -23,7 +25,7 @@ def offering(ending: str) -> list[str]:
 
 
 def _listens(master: rosgraph.Master, node: str) -> bool:
-    """At its XML-RPC port: of a service's, a node warns when nobody asks for anything there."""
+    """Whether the node answers at its XML-RPC port; at a service's port it would log a warning."""
     try:
         return listens(master.lookupNode(node))
     except (OSError, rosgraph.MasterException):

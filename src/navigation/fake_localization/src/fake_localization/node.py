@@ -98,7 +98,7 @@ class FakeLocalization:
             time.sleep(POLL)
 
     def _next(self, latest: rospy.Time) -> Odometry | None:
-        """Taken from what waits, if it is not newer than `latest` (0: odometry that stands)."""
+        """The oldest waiting odometry, unless it is newer than `latest` (0: any)."""
         with self._came:
             is_ready = self._waiting and (latest.is_zero()
                                           or self._waiting[0].header.stamp <= latest)

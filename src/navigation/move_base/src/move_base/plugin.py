@@ -1,4 +1,4 @@
-"""Base of everything that is chosen by name: a parameter table and its changes."""
+"""Base class of planners and recoveries, which are chosen by name: parameters and their changes."""
 
 from __future__ import annotations
 

@@ -165,5 +165,5 @@ class StateMachine:
         self.state, self.wants_plan = State.PLANNING, True
 
     def _clear(self, trigger: Trigger) -> None:
-        """Planning pauses; in upstream it goes on, and a plan may cut recovery short."""
+        """Start recovery without planning; upstream plans on, and a plan may end recovery early."""
         self.state, self.trigger, self.wants_plan = State.CLEARING, trigger, False

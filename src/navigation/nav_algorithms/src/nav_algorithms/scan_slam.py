@@ -91,7 +91,7 @@ class ScanSlam:
         return True
 
     def place(self, pose: np.ndarray) -> None:
-        """Goes on from another pose (3,), on the same map."""
+        """Continue from another pose (3,), on the same map."""
         self.pose, self._velocity = np.array(pose, float), np.zeros(3)
 
     def grid(self) -> OccupancyGrid:

@@ -164,7 +164,7 @@ def _closed_road(mask: np.ndarray) -> MidLine:
 
 
 def _mid_line(infield: np.ndarray, outside: np.ndarray) -> MidLine:
-    """Where the infield is as far as the outside: the contour of what is nearer to the infield."""
+    """The line midway between infield and outside: the contour of what is nearer to the infield."""
     to_infield, to_outside = _distance_to(infield), _distance_to(outside)
     ahead = cv2.GaussianBlur(to_infield - to_outside, (0, 0), 1.0)
     inner = (infield | (~outside & (to_infield < to_outside))).astype(np.uint8)

@@ -44,7 +44,7 @@ def prefixed(text: str, kind: type[SimulationError] = FormatError) -> Iterator[N
 
 
 def did_you_mean(word: str, known: Iterable[str], alike: float, form: str = "{}") -> str:
-    """The end of a line: the nearest of the known words, if it is at least so similar (0..1)."""
+    """The end of a line: the nearest known word, if its similarity (0..1) is at least `alike`."""
     close = difflib.get_close_matches(word, known, 1, alike)
     return f" (did you mean {form.format(close[0])}?)" if close else ""
 

@@ -25,7 +25,7 @@ class Profiler:
         self._thread = threading.local()
 
     def add(self, name: str, seconds: float, count: int = 1) -> None:
-        """Add `count` executions that took so many seconds of wall time."""
+        """Add `count` executions that took `seconds` of wall time together."""
         stage = self._stages[name]
         stage.count += count
         stage.total += seconds

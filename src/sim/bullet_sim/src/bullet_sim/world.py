@@ -75,7 +75,7 @@ class World:
         return self.tick * self.timestep
 
     def step(self, count: int = 1) -> None:
-        """Advance by so many steps; while paused, time does not advance."""
+        """Advance by `count` steps; while paused, time does not advance."""
         if self.paused or count < 1:
             return
         if self.is_at_rest and not (self.each_step or self.forces or self._actors):

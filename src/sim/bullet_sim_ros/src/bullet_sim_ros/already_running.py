@@ -120,7 +120,7 @@ def registering(master_uri: str, name: str) -> Iterator[None]:
 
 
 class ImpatientTransport(xmlrpc.client.Transport):
-    """Hangs up after so many s, as a node may hang, or answer without an end: TimeoutError."""
+    """Gives up after `seconds` with a TimeoutError: a node may hang, or answer without end."""
 
     def __init__(self, seconds: float) -> None:
         super().__init__()

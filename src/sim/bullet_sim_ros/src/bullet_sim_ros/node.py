@@ -84,11 +84,11 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--world", default="worlds/empty.world", help="world file")
     parser.add_argument("--paused", action="store_true", help="start with time standing still")
     parser.add_argument("--physics", default="ode", help="accepted, no effect: Bullet computes")
-    parser.add_argument("--seed", type=_seed, default=0, help="of everything random")
+    parser.add_argument("--seed", type=_seed, default=0, help="seed of all random numbers")
     parser.add_argument("--real-time-factor", type=_up_to(FASTEST), default=None,
-                        help="1: real time, 0: as fast as it goes; without it, as in the world")
+                        help="1: real time, 0: no limit; default: the world's rate")
     parser.add_argument("--verbose", action="store_true", help="also show what is loaded")
-    parser.add_argument("--iters", type=int, default=0, help="end after so many steps")
+    parser.add_argument("--iters", type=int, default=0, help="end after this many steps")
     parser.add_argument("--initial-sim-time", type=_up_to(LATEST), default=0.0, help="s")
     return parser.parse_args(arguments)
 

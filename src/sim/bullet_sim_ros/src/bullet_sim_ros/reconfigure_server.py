@@ -59,7 +59,7 @@ def offer_changes(context: PluginContext, namespace: str, values: Mapping[str, V
 
 
 class ValueServer(EntryServer):
-    """Calls `change(values)` at once, and in a ROS thread whenever somebody changes one."""
+    """Calls `change(values)` at once, and in a ROS thread after each change."""
 
     def __init__(self, namespace: str, values: Mapping[str, Value],
                  change: Callable[[dict[str, float | bool]], None]):

@@ -43,7 +43,7 @@ class Recording:
         simulation.scheduler.add(RATE_HZ, self._write_state)
 
     def _write_state(self) -> None:
-        """Nobody is judged by it: if it cannot be written, the simulation goes on without."""
+        """Append the news to the file; if it cannot be written, the simulation goes on without."""
         if self._file is None:
             return
         try:

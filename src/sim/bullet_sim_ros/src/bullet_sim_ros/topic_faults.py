@@ -85,7 +85,7 @@ def contested(senders: dict[str, list[str]], types: dict[str, str]) -> Iterator[
 
 
 def unheard(graph: Graph, me: str) -> Iterator[Fault]:
-    """Topics of commands that nobody hears, while a robot hears nobody on another one."""
+    """Command topics without a subscriber, while a robot's own command topic has no publisher."""
     idle = [topic for topic, nodes in graph.subscribers.items()
             if me in nodes and not graph.publishers.get(topic)]
     for topic, nodes in graph.publishers.items():
@@ -101,7 +101,7 @@ def unheard(graph: Graph, me: str) -> Iterator[Fault]:
 
 
 def unseen(graph: Graph, me: str) -> Iterator[Fault]:
-    """Topics of sensors that somebody waits for and nobody publishes, while ours has others."""
+    """Sensor topics with a subscriber and no publisher, while the simulator's have other names."""
     for topic, everybody in graph.subscribers.items():
         kind = graph.types.get(topic)
         nodes = [node for node in everybody

@@ -141,7 +141,7 @@ def stand_ins(graph: Graph) -> dict[str, object]:
 
 @contextmanager
 def without_master(caller: str = "/gazebo") -> Iterator[Graph]:
-    """Replaces rospy by an empty graph meanwhile; `caller` is the node name that ~ stands for."""
+    """Within `with`, rospy has an empty graph and no master; `caller`: the node's own name (~)."""
     graph = Graph()
     places = [(rospy, name, stand_in) for name, stand_in in stand_ins(graph).items()]
     places += [(rospy.rostime, "_rostime_initialized", True),

@@ -65,7 +65,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Shown:
-    """What stands beside the 3D view."""
+    """What the page shows beside the 3D view."""
 
     title: str
     text: str = ""  # the run's figures

@@ -65,7 +65,7 @@ def running_page(name: str, rviz: str) -> tuple[str, ...]:
 
 
 def why_another_port(options: Options, port: int) -> str:
-    """A line that says who has the port of the options, so that this page is at `port`."""
+    """A line that says who holds the port asked for, and that this page is at `port` instead."""
     told = ask(local_url(options.address, options.port))
     if "master" in told:
         return OTHER_MASTER % (options.port, told["master"], port)

@@ -75,7 +75,7 @@ def off_whole_periods(times: np.ndarray) -> float:
 
 
 def _growth(name: str, run: RosRun, length: float) -> Figure:
-    """Of the simulator's memory at even steps of simulated time, until so much has passed."""
+    """Growth of the simulator's memory, taken at even steps in `length` s of simulated time."""
     begin = simulator.simulated_time()
     samples, reported_at = [], time.monotonic()
     while (passed := simulator.simulated_time() - begin) < length:

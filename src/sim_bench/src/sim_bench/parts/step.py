@@ -96,7 +96,7 @@ def _timed_awake(waffle: Model, step: Callable[[], None]) -> float:
 
 
 def _timed(step: Callable[[], None], steps: int) -> float:
-    """Seconds of one step, by the mean of so many."""
+    """Seconds of one step, by the mean of `steps`."""
     start = time.perf_counter()
     for _ in range(steps):
         step()

@@ -107,7 +107,7 @@ def is_python(path: Path) -> bool:
 
 @cache
 def _naming(folder: Path) -> Mapping[bytes, list[Path]]:
-    """The Python files that each word stands in."""
+    """For each word, the Python files that contain it."""
     found = defaultdict(list)
     for place, _, files in walk(folder):
         for path in (Path(place, name) for name in files):

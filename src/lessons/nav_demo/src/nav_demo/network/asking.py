@@ -78,7 +78,7 @@ class Peer:
         return value if code == 1 else None
 
     def answer(self) -> str:
-        """yes; refused: nobody listens; silence; other: it answers, but not as ROS does."""
+        """One of yes, refused (no listener), silence, other (it answers, but not as ROS does)."""
         try:
             self.call("getPid")
         except ConnectionRefusedError:

@@ -141,7 +141,7 @@ class HeldWheels:
         return math.hypot(x, y) < TILTING and abs(wanted * z) < self._wheels[joint].fastest
 
     def _wheel(self, link: PhysicsLink, radius: float, mass: float, count: int) -> Wheel | None:
-        """The wheel if its axle is one of its principal axes; one of so many of the body."""
+        """One of the body's `count` wheels; None unless its axle is one of its principal axes."""
         index = self._links.index[link.name]
         turn = conjugate(self._links.com_in_link(index).orientation)
         axle = [abs(part) / math.hypot(*link.joint.axis)

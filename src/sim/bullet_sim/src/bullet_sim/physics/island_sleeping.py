@@ -70,7 +70,7 @@ class IslandSleeping:
             self._disable(ready, nearly)
 
     def _slow(self, samples: int) -> set[int]:
-        """Numbers of the bodies whose mean speed over so many samples was low."""
+        """Numbers of the bodies whose mean speed over the last `samples` was low."""
         return {number for number, seen in self._poses.items()
                 if len(seen) > samples
                 and _slower(seen[-1 - samples], seen[-1], samples * SAMPLE_PERIOD)}
@@ -126,7 +126,7 @@ class IslandSleeping:
 
 
 def _slower(before: tuple, after: tuple, seconds: float) -> bool:
-    """Whether it moved between the poses, in so many seconds, below both thresholds."""
+    """Whether both speeds, linear and angular, were below their thresholds between the poses."""
     moved = math.dist(before[0], after[0])
     turned = 2 * math.acos(min(1.0, abs(sum(map(mul, before[1], after[1])))))
     return moved < SPEED * seconds and turned < RATE * seconds

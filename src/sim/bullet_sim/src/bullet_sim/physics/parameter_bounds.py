@@ -33,7 +33,7 @@ def check_physics(physics: PhysicsDescription) -> None:
                               f"{SHORTEST_STEP:g} to {LONGEST_STEP:g} is")
     if not 0 <= physics.real_time_update_rate <= HIGHEST_RATE:
         raise SimulationError(f"an update rate of {physics.real_time_update_rate:g} Hz is not "
-                              f"possible; 0 (as fast as it goes) to {HIGHEST_RATE:g} is")
+                              f"possible; 0 (no limit) to {HIGHEST_RATE:g} is")
     if not 0 <= physics.iterations <= MOST_ITERATIONS:
         raise SimulationError(f"{physics.iterations} solver iterations per step are not possible; "
                               f"0 to {MOST_ITERATIONS} are")

@@ -125,7 +125,7 @@ def shadow_places(reach: Reach, casters: np.ndarray, in_map: np.ndarray, receive
 
 
 def widened(boxes: np.ndarray, by: float) -> np.ndarray:
-    """Corners (n, 8, 3) of boxes enlarged by so many m on each side."""
+    """Corners (n, 8, 3) of boxes enlarged by `by` m on each side."""
     edges = boxes[:, [4, 2, 1]] - boxes[:, :1]
     return boxes + np.einsum("nij,ic->ncj", edges * by / np.linalg.norm(
         edges, axis=2, keepdims=True), _SIGNS)

@@ -101,7 +101,7 @@ def _runs(values: list[int], start: int) -> list[tuple[int, int, int]]:
 
 @functools.cache
 def _edges(corners: int) -> np.ndarray:
-    """(2, n): the corners at the ends of each edge of a box with so many dimensions."""
+    """(2, n): the numbers of the two corners of each edge of a box with `corners` corners."""
     bits = [1 << bit for bit in range(corners.bit_length() - 1)]
     return np.array([(one, one | bit) for bit in bits for one in range(corners)
                      if not one & bit]).T

@@ -24,7 +24,7 @@ class ErrorParameters:
 
     @staticmethod
     def none(size: int) -> ErrorParameters:
-        """A sensor with so many components and no errors."""
+        """A sensor with `size` components and no errors."""
         zeros = (0.0,) * size
         return ErrorParameters(zeros, zeros, (1.0 / HOUR,) * size, zeros, (1.0,) * size)
 

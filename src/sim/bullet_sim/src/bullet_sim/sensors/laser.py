@@ -78,7 +78,7 @@ def count(samples: int, resolution: float) -> int:
 
 
 def angles(first: float, last: float, number: int) -> np.ndarray:
-    """So many directions evenly from the first angle to the last, rad."""
+    """`number` directions, evenly from the first angle to the last, rad."""
     return np.linspace(first, last, number) if number > 1 else np.zeros(1)
 
 

@@ -120,7 +120,7 @@ def _display(entry: Mapping[str, Any], enabled: bool) -> dict[str, Any]:
 
 
 def flat(entry: Mapping[str, Any], before: str = "") -> dict[str, Any]:
-    """Nested properties as `Shape/Color`; a property's own value goes by its name alone."""
+    """Nested properties as `Shape/Color`; a property's own value has the plain name as its key."""
     found: dict[str, Any] = {}
     for name, value in entry.items():
         if isinstance(value, Mapping):

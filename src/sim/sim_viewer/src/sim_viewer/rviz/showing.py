@@ -53,7 +53,7 @@ class Pace:
         return self._sent is None
 
     def sent(self, points: int, now: float) -> int:
-        """A frame with so many points is sent; returns its number."""
+        """Note that a frame with `points` points is sent; returns the frame's number."""
         self._number += 1
         self._sent, self._large = now, points >= self.most_points / 2
         return self._number

@@ -53,7 +53,7 @@ class Body:
         )
 
     def take_in(self, child: Body, origin: Pose) -> None:
-        """Take in everything of `child`, whose frame is at `origin` here."""
+        """Add everything of `child`; `origin`: the pose of its frame in this body."""
         self.inertial = combined(self.inertial, child.inertial, origin)
         self.visuals += [(owner, stem, _moved(s, origin)) for owner, stem, s in child.visuals]
         self.collisions += [(owner, stem, _moved(s, origin)) for owner, stem, s in child.collisions]

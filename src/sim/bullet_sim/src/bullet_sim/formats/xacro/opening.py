@@ -54,7 +54,7 @@ def _check(filename: str) -> None:
     """OSError for anything that exists and is not a regular file: reading a pipe would block."""
     if os.path.exists(filename):
         try:
-            check_file(filename, LARGEST_FILE, "split it, or write macros for what comes again")
+            check_file(filename, LARGEST_FILE, "split it, or use macros for repeated parts")
         except FormatError as error:
             reason = str(error).removeprefix(f"{filename} cannot be read: ")
             raise OSError(errno.EINVAL, reason) from None
