@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import pytest
 
-from evaluation import live
+from evaluation import command_line, live
 from evaluation.command_line import results_folder, run_program
 
 
@@ -128,6 +128,9 @@ def test_a_folder_that_another_run_writes_is_refused_until_its_process_has_died(
     holds.stdout.readline()
     assert run_program("drive", lambda: live.run_live(drive)) == 2
     assert f"(PID {holds.pid})" in capsys.readouterr().err
+    monkeypatch.setattr(command_line, "LOCKS", tmp_path / "not there")
+    assert run_program("drive", lambda: live.run_live(drive)) == 2
+    assert "(PID ?)" in capsys.readouterr().err
     holds.kill()
     holds.communicate()
     assert run_program("drive", lambda: live.run_live(drive)) == 0

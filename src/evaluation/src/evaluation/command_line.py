@@ -24,6 +24,7 @@ from trial_worlds.errors import WorldError
 MOST = 999_999          # largest count or seed
 LARGEST_SEED = 999_999_999
 LEAST_PACE, MOST_PACE = 0.01, 20.0  # no machine can keep up with more
+LOCKS = Path("/proc/locks")
 
 
 class Parser(argparse.ArgumentParser):
@@ -143,24 +144,27 @@ def results_folder(program: str, out: Path) -> Iterator[None]:
             raise
         raise RunError(f"{option_of(program, 'out')} {out}: {error.strerror}") from error
     try:
-        with contextlib.suppress(OSError):  # a network's file system, which cannot lock folders
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                raise RunError(
-                    f"{out} is being written by another run (PID {_writer(lock)}): end it, or "
-                    f"give a folder elsewhere: {elsewhere(program)}") from None
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise RunError(f"{out} is being written by another run (PID {_writer(lock)}): end it, "
+                           f"or give a folder elsewhere: {elsewhere(program)}") from None
+        except OSError:  # a network's file system, which cannot lock folders
+            pass
         yield
     finally:
         os.close(lock)
 
 
 def _writer(folder: int) -> str:
-    """The process that has locked this open folder; "?": it has just ended."""
+    """The process that has locked this open folder; "?": it has just ended, or is not shown."""
     node = str(os.fstat(folder).st_ino)
-    locks = [line.split() for line in Path("/proc/locks").read_text(encoding="ascii").splitlines()]
-    return next((words[4] for words in locks
-                 if words[1] == "FLOCK" and words[5].rpartition(":")[2] == node), "?")
+    with contextlib.suppress(OSError):  # a sandbox may have no /proc/locks
+        for line in LOCKS.read_text(encoding="ascii").splitlines():
+            words = line.split()
+            if words[1] == "FLOCK" and words[5].rpartition(":")[2] == node:
+                return words[4]
+    return "?"
 
 
 def complain(name: str, failure: Exception) -> None:
