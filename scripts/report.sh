@@ -38,15 +38,18 @@ versions() {
 # The errors in the logs of a folder or file, under this heading.
 errors() {
   local heading=$1 logs=() found
-  mapfile -td '' logs < <(find -L "${@:2}" -name '*.log' -size +0 -printf '%T@ %p\0' 2>/dev/null | sort -zn | cut -zd ' ' -f 2-)
+  mapfile -td '' logs < <(find -H "${@:2}" -name '*.log' -size +0 -printf '%T@ %p\0' 2>/dev/null | sort -zn | cut -zd ' ' -f 2-)
   [ ${#logs[@]} -gt 0 ] || return 0
   found=$(ROOT=$root OURS=$ours perl -ne '
-    while (m{(?:\Q$ENV{ROOT}\E/(?=(?:src/(?:$ENV{OURS})|scripts|test|\.venv)/)|(?=/usr/lib/python3))([\w./+-]+)(?:",\ line\ |:)(\d+)
+    while (m{(?:\Q$ENV{ROOT}\E/(?=(?:src/(?:$ENV{OURS})|scripts|test|\.venv)/)|(?<![\w./-])(?=/usr/lib/python3[\d.]*/))
+             ((?:(?!\.\./)[\w./+-])+)(?:",\ line\ |:)(\d+)
             |^(?:\w+\.)*(\w+(?:Error|Exception))(?::|$)
             |(process\ has\ died|exit\ code\ -?\d+|CMake\ Error|[Nn]o\ space\ left|Permission\ denied|Segmentation\ fault
              |Unable\ to\ locate\ package|unmet\ dependencies|No\ matching\ distribution|DO\ NOT\ MATCH\ THE\ HASHES
              |Temporary\ failure|Could\ not\ (?:resolve|connect|get\ lock)|Connection\ refused|Network\ is\ unreachable)}gx) {
-      print "  ", defined $1 ? "$1:$2" : $3 // $4, "\n";
+      my ($place, $line, $known) = ($1, $2, $3 // $4);
+      $place =~ s{^src/.*/scripts/\K.*}{} if $place;  # a learner may put programs of his own there
+      print "  ", $known // "$place:$line", "\n";
     }' "${logs[@]}" | uniq | tail -n "$lines")
   say "log: $heading, $(date -r "${logs[-1]}" '+%F %R'):${found:+$'\n'}${found:- no known error}"
 }

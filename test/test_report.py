@@ -24,6 +24,11 @@ C:\\Users\\zhang wei C:\Users\zhang wei
 roslaunch-Kontor-7-4711.log Zhang_Wei_20231234/track0-seed1
 """.strip().replace("{who}", "zhang").splitlines()
 PLACES = """Traceback (most recent call last):
+  File "{root}/src/learning_topic/scripts/20231234_zhang.py", line 5, in <module>
+  File "{root}/src/lessons/../../../zhang.py", line 3, in <module>
+  File "/usr/lib/python3/../../home/zhang.py", line 3, in <module>
+  File "/srv/usr/lib/python3/zhang.py", line 3, in <module>
+  File "/usr/lib/python3zhang/x.py", line 3, in <module>
   File "{root}/src/sim/bullet_sim/a.py", line 12, in <module>
   File "/usr/lib/python3/dist-packages/rospy/client.py", line 7, in zhang
   File "{root}/src/zhang_bot/talker.py", line 3, in <module>
@@ -33,6 +38,7 @@ E: Unable to locate package zhang
 AssertionError
 """
 TOLD = """
+  src/learning_topic/scripts/:5
   src/sim/bullet_sim/a.py:12
   /usr/lib/python3/dist-packages/rospy/client.py:7
   ROSException
