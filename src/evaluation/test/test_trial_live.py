@@ -65,6 +65,35 @@ def test_ctrl_c_after_the_drive_does_not_lose_its_report(tmp_path, monkeypatch):
     assert [report["outcome"] for report in drive.reports] == ["passed"]
 
 
+CUT_OFF = """
+from test_trial_live import *
+
+class Interrupting(Ending):
+    def __exit__(self, *_):
+        sys.stdin.read()
+        raise KeyboardInterrupt
+
+live.Session, Film.codec = Interrupting, "h264"
+FakeDrive.write = lambda drive, report: [(drive.out / "report.json").write_text(str(report))] * 0
+drive = FakeDrive(live.Path(sys.argv[1]))
+drive.film = Film()
+print("ready", flush=True)
+sys.exit(run_program("drive", lambda: live.run_live(drive)))
+"""
+
+
+@pytest.mark.processes
+def test_ctrl_c_that_ends_tee_too_does_not_lose_the_film(tmp_path):
+    run = subprocess.Popen([sys.executable, "-c", CUT_OFF, str(tmp_path)], text=True,
+                           cwd=os.path.dirname(__file__), stdin=subprocess.PIPE,
+                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    assert run.stdout.readline() == "ready\n"
+    run.stdout.close()
+    run.stdin.close()
+    assert run.wait(60) == 130
+    assert "h264" in (tmp_path / "report.json").read_text()
+
+
 class Whole(Ending):
     """A session that ends by itself."""
 

@@ -2,7 +2,10 @@
 
 import json
 import pickle
+import subprocess
+import sys
 from dataclasses import asdict, dataclass
+from pathlib import Path
 
 import pytest
 
@@ -114,9 +117,36 @@ def test_ctrl_c_says_how_to_go_on(tmp_path, capsys, at, says):
                 raise KeyboardInterrupt
             return super().judge(record)
 
-    words = ["--numbers", "4", "--out", str(tmp_path)]
+    (tmp_path / "report.json").write_text('{"squares": [{"name": "8", "value": 64}]}')  # of no case
+    words = ["--numbers", "4", "--out", str(tmp_path), "--resume"]
     assert run_trial(Interrupted(), words) == INTERRUPTED
     assert capsys.readouterr().err == f"{says}squares: interrupted; all processes ended\n"
+
+
+CUT_OFF = """
+import sys
+from test_trial_runner import *
+
+class Interrupted(Squares):
+    def judge(self, record):
+        if record == "2" and sys.stdin.read() == "":
+            raise KeyboardInterrupt
+        return super().judge(record)
+
+sys.exit(run_trial(Interrupted(), ["--numbers", "4", "--out", sys.argv[1]]))
+"""
+
+
+@pytest.mark.processes
+def test_ctrl_c_that_ends_tee_too_loses_no_page(tmp_path):
+    run = subprocess.Popen([sys.executable, "-c", CUT_OFF, str(tmp_path)], text=True,
+                           cwd=Path(__file__).parent, stdin=subprocess.PIPE,
+                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    run.stdout.readline()
+    run.stdout.close()
+    run.stdin.close()
+    assert run.wait(60) == INTERRUPTED
+    assert (tmp_path / "report.html").exists()
 
 
 @pytest.mark.parametrize(("words", "said"), [

@@ -105,6 +105,16 @@ def test_a_ctrl_c_while_processes_end_leaves_none(tmp_path, type_ctrl_c):
     assert child.process.poll() is not None
 
 
+def test_a_progress_line_that_nobody_reads_is_as_ctrl_c():
+    def write(_text):
+        raise BrokenPipeError
+
+    unread = io.StringIO()
+    unread.write = write
+    with pytest.raises(KeyboardInterrupt):
+        StatusLine(unread).say("simulated 0.0 s")
+
+
 def test_a_progress_line_is_in_the_terminal_s_language_and_fits(monkeypatch):
     monkeypatch.setenv("LC_ALL", "C.UTF-8")
     monkeypatch.setenv("LANGUAGE", "zh_CN")

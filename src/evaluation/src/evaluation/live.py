@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
-from node_basics.ending import interruptible
+from node_basics.ending import drop_unread_output, interruptible
 from sim_viewer.replay_page import Curve
 from terminal_language import translated
 
@@ -167,6 +167,7 @@ def _run(drive: LiveDrive) -> int:
     except KeyboardInterrupt as ended:  # during the shutdown: results are still reported
         early = ended
     found = None
+    drop_unread_output()  # Ctrl-C ends `tee`, too
     try:
         found = _report(drive, outcome)
     finally:

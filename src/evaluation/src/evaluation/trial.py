@@ -14,6 +14,8 @@ from pathlib import Path
 from types import UnionType
 from typing import Any, ClassVar, get_args, get_origin, get_type_hints
 
+from node_basics.ending import drop_unread_output
+
 from evaluation.command_line import (
     NOT_PASSED,
     PASSED,
@@ -208,8 +210,9 @@ def _run_cases(trial: Trial, options: argparse.Namespace, arguments: Sequence[st
         else:
             _try_here(tally, trial, options.out)
     except KeyboardInterrupt:
-        if tally.results:
-            print(f"{len(tally.results)} of {len(tally.cases)} cases are done; "
+        drop_unread_output()  # Ctrl-C ends `tee`, too
+        if tally.done:
+            print(f"{tally.done} of {len(tally.cases)} cases are done; "
                   f"{trial.named('resume')} goes on with the others", file=sys.stderr)
         raise
     finally:
@@ -231,6 +234,11 @@ class Tally:
         self.failures: list[str] = []  # a line each
         self._place = {case.name: number for number, case in enumerate(self.cases)}
 
+    @property
+    def done(self) -> int:
+        """How many of the cases have results."""
+        return sum(self._number(each) >= 0 for each in self.results)
+
     def is_needed(self, case: Case) -> bool:
         """Whether a case still has to be run, given the results of those before it."""
         there = {result.name for result in self.results}
@@ -241,8 +249,7 @@ class Tally:
         """Add a result, print its line and write the report."""
         self.results.append(result)
         self.results.sort(key=self._number)
-        count = sum(self._number(each) >= 0 for each in self.results)
-        shown = "" if self._trial.open_ended else f"[{count}/{len(self.cases)}] "
+        shown = "" if self._trial.open_ended else f"[{self.done}/{len(self.cases)}] "
         say(f"{shown}{self._trial.line(result)}")
         self.write()
 

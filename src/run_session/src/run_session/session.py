@@ -32,7 +32,10 @@ T = TypeVar("T")
 
 
 class StatusLine:
-    """Knows where to write and when a line is due; the text comes from the caller."""
+    """Knows where to write and when a line is due; the text comes from the caller.
+
+    If nobody reads any more, as of `... | head`, that is as Ctrl-C: KeyboardInterrupt.
+    """
 
     def __init__(self, stream: TextIO | None = None):
         self._stream = stream or sys.stdout
@@ -50,7 +53,7 @@ class StatusLine:
     def say(self, text: str) -> None:
         """Print a line that is not overwritten."""
         self.end()
-        print(text, file=self._stream, flush=True)
+        self._print(text)
 
     def status(self, text: str) -> None:
         """Show what is being waited for, on a terminal only."""
@@ -80,14 +83,20 @@ class StatusLine:
     def end(self) -> None:
         """Leave the line as it is and go to the next."""
         if self._open:
-            print(file=self._stream, flush=True)
+            self._print()
         self._open = False
 
     def _rewrite(self, text: str) -> None:
         # A wrapped line cannot be rewritten.
         shown = cut(translated(text), shutil.get_terminal_size().columns - 1)
-        print(f"\r{shown}\x1b[K", end="", file=self._stream, flush=True)
+        self._print(f"\r{shown}\x1b[K", end="")
         self._open = True
+
+    def _print(self, text: str = "", end: str = "\n") -> None:
+        try:
+            print(text, end=end, file=self._stream, flush=True)
+        except BrokenPipeError:
+            raise KeyboardInterrupt from None
 
 
 PACKAGES = ("pybullet", "moderngl", "opencv-python-headless", "numpy")
