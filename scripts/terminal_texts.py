@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -239,6 +240,7 @@ NO_TEXT = re.compile(
     r"|[\\^]|\|(?! )|(?<! )\||\w\[\w|^import |^# |^/|^~\S*$")
 
 
+@cache
 def python_texts() -> dict[str, list[str]]:
     """Each text that a program prints, and the files that it is in."""
     found: dict[str, list[str]] = {text: ["Python's argparse"] for text in OF_ARGPARSE}

@@ -8,6 +8,7 @@ import re
 import shlex
 import shutil
 import subprocess
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -58,11 +59,19 @@ def runner_of(command: str) -> dict | None:
     return next((r for r in RUNNERS if re.fullmatch(r["match"], command)), None)
 
 
-def in_workspace(command: str, limit: float = 30.0) -> subprocess.CompletedProcess:
-    """Runs it as a person would who has sourced the workspace, where there is a built one."""
+@cache
+def sourced() -> dict[str, str]:
+    """The environment of a person who has sourced the workspace, where there is a built one."""
     enter = "source devel/setup.bash; " if BUILT else ""
-    return subprocess.run(["bash", "-c", enter + command], cwd=ROOT, timeout=limit, text=True,
-                          capture_output=True, stdin=subprocess.DEVNULL)
+    said = subprocess.run(["bash", "-c", f"{enter}env -0"], cwd=ROOT, text=True, check=True,
+                          stdout=subprocess.PIPE).stdout
+    return dict(each.split("=", 1) for each in said.split("\0") if each)
+
+
+def in_workspace(command: str, limit: float = 30.0) -> subprocess.CompletedProcess:
+    """Runs it as such a person would."""
+    return subprocess.run(["bash", "-c", command], cwd=ROOT, timeout=limit, text=True,
+                          env=sourced(), capture_output=True, stdin=subprocess.DEVNULL)
 
 
 def not_there(command: str) -> str | None:

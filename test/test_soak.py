@@ -11,11 +11,13 @@ from types import SimpleNamespace
 
 import pytest
 
+from evaluation.command_line import run_program
 from run_session.failure import RunError
 from run_session.processes import Process
 
 sys.path.insert(0, str(Path(__file__).parent / "soak"))
 import samples
+import soak
 from growth import judge
 from samples import ALL, CLOCK, FEWEST, PERIOD, Sample
 
@@ -104,7 +106,7 @@ def test_a_short_run_is_sampled_and_leaves_its_files(tmp_path):
 
 
 @pytest.mark.parametrize("words", [["--hours", "0"], ["--hours", "nan"], ["--course", "moon"]])
-def test_a_mistake_is_said_and_nothing_starts(words):
-    run = subprocess.run([sys.executable, str(PROGRAM), *words],
-                         capture_output=True, text=True, timeout=60, check=False)
-    assert run.returncode == 2 and run.stderr.count("\n") == 1 and words[1] in run.stderr
+def test_a_mistake_is_said_and_nothing_starts(capsys, words):
+    code = run_program("soak", lambda: soak.main(words))
+    said = capsys.readouterr().err
+    assert code == 2 and said.count("\n") == 1 and words[1] in said

@@ -6,8 +6,12 @@ from pathlib import Path
 import pytest
 from workspace_needs.check.command import main
 
+from bullet_sim_ros.plugins import register_plugins
+
 sys.path.insert(0, str(Path(__file__).parent))
 from workspaces import add_package
+
+register_plugins()  # once, and not in the process of each file that a test checks
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from workspace_needs.check.command import main
 from workspace_needs.check.findings import PROBLEM, Finding, table
 from workspace_needs.command import not_to_be_had
 from workspace_needs.verdicts import judge
-from workspaces import add_files, add_package
+from workspaces import add_files, add_package, add_plain
 
 # A file is checked in a fork of this process, which must not hold engines or OpenGL of other tests.
 pytestmark = pytest.mark.processes
@@ -48,9 +48,9 @@ def workspace(tmp_path, capsys):
     (folder / "scripts/talk.py").chmod(0o755)
 
     def run(cmake: str = "", **files: str) -> tuple[int, str]:
+        catkin = "find_package(catkin REQUIRED)\ncatkin_package()\n" * ("catkin" in cmake)
         (folder / "CMakeLists.txt").write_text(
-            "cmake_minimum_required(VERSION 3.0)\nproject(arm)\nfind_package(catkin REQUIRED)\n"
-            f"catkin_package()\n{cmake}")
+            f"cmake_minimum_required(VERSION 3.0)\nproject(arm)\n{catkin}{cmake}")
         for name, text in files.items():
             (folder / name.replace("__", ".")).write_text(text)
         code = main([str(tmp_path)])
@@ -173,7 +173,7 @@ def test_a_package_whose_scripts_are_all_fine(package, tmp_path, capsys):
 @pytest.fixture
 def wheel(tmp_path):
     """A launch file of a package whose workspace is not sourced; its package has a script."""
-    folder = add_package(tmp_path / "src", "my_wheel", cmake="add_executable(n main.cpp)")
+    folder = add_plain(tmp_path / "src", "my_wheel", cmake="add_executable(n main.cpp)")
     add_files(folder, {"package.xml": (folder / "package.xml").read_text(),
                        "main.cpp": "int main() {}\n",
                        "scripts/talk.py": "#!/usr/bin/env python3\n",

@@ -344,8 +344,11 @@ def test_catkin_make_leaves_out_what_cannot_be_built(tmp_path, capsys, monkeypat
     assert catkin_make_words(["--make-args", "-j2"])[0] == [*hook(), option, "--make-args", "-j2"]
     chosen = ["-DCATKIN_BLACKLIST_PACKAGES=wheel"]
     assert catkin_make_words(chosen)[0] == [*hook(), *chosen]
-    for chosen, are_all in (("arm", True), ("arm;wheel", False), ("", False)):
-        words = [f"-DCATKIN_WHITELIST_PACKAGES={chosen}"]
+    for words, are_all in ((["-DCATKIN_WHITELIST_PACKAGES=arm"], True),
+                           (["-DCATKIN_WHITELIST_PACKAGES=arm;wheel"], False),
+                           (["-DCATKIN_WHITELIST_PACKAGES="], False),
+                           (["--only-pkg-with-deps=arm"], True),
+                           (["--only-pkg-with-deps", "arm", "wheel"], False)):
         given, left = catkin_make_words(words)
         assert given == [*hook(), option, *words] and left.are_all is are_all
     monkeypatch.chdir(tmp_path / "src")

@@ -7,6 +7,7 @@ tests all read these files.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -75,6 +76,12 @@ def read_interface(folder: Path | None = None) -> list[Section]:
 def rows_by_name(sections: list[Section]) -> dict[str, Row]:
     """All rows, by name."""
     return {row.name: row for section in sections for row in section.rows}
+
+
+@cache
+def documented() -> dict[str, Row]:
+    """All rows of the package's own files, by name; read once."""
+    return rows_by_name(read_interface())
 
 
 def _read_section(path: Path) -> Section:

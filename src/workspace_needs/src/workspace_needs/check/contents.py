@@ -11,8 +11,9 @@ from pathlib import Path
 
 from bullet_sim.errors import did_you_mean
 from bullet_sim.formats.xacro.bounds import TooLarge, run_bounded
-from bullet_sim_ros.interface import read_interface, rows_by_name
+from bullet_sim_ros.interface import documented
 from bullet_sim_ros.package_paths import open_resources
+from bullet_sim_ros.plugins import register_plugins
 from workspace_needs.check.findings import HINT, WORKS, Finding, problem
 from workspace_needs.check.launches import NONE_UNBUILT, LaunchChecker, Unbuilt
 from workspace_needs.check.modules import text_of
@@ -37,15 +38,19 @@ class Check:
         self._arguments = arguments
         self._environ = environ
         resources = open_resources(environ)
-        rows = rows_by_name(read_interface())
+        rows = documented()
         self._texts = TextChecker(rows, resources)
         self._launches = LaunchChecker(rows, self._texts, resources, run_commands, environ, unbuilt)
+        self._files = 0  # that were looked at
 
     def file(self, path: Path, alone: bool = True) -> list[Finding]:
         """Findings about one file, from a process of its own with limits of time and memory.
 
         `alone`: the user named this file, and not only its package or workspace.
         """
+        if self._files == 1:
+            register_plugins()  # here, so that not the process of each further file imports them
+        self._files += 1
         with tempfile.TemporaryDirectory(prefix="check-") as folder:
             result = Path(folder) / "findings"
 

@@ -1,6 +1,5 @@
 """The plugin classes by library file name, and the loading of all plugins of a model."""
 
-import functools
 import logging
 from collections.abc import Callable
 from pathlib import PurePosixPath
@@ -10,7 +9,7 @@ from bullet_sim.errors import did_you_mean
 from bullet_sim.model import Model
 from bullet_sim.rendering.renderer import NoRenderer
 from bullet_sim_ros.errors import format_error
-from bullet_sim_ros.interface import Row, read_interface, rows_by_name
+from bullet_sim_ros.interface import documented
 from bullet_sim_ros.plugin_host.context import PluginContext, PluginHost
 from bullet_sim_ros.plugin_host.unknown import warn_of_unknown
 
@@ -104,7 +103,7 @@ def warn_of_unread_tags(context: PluginContext) -> None:
     unread = [tag for tag in context.parameters.unread() if tag not in EVERY_PLUGIN]
     if not unread:
         return
-    row = _documented().get(PurePosixPath(context.description.filename).name)
+    row = documented().get(PurePosixPath(context.description.filename).name)
     known = set(row.tags) if row else set()
     for tag in unread:
         if tag not in known:
@@ -117,11 +116,6 @@ def warn_of_unread_tags(context: PluginContext) -> None:
 def _inner(path: str) -> str:
     """`a><b` of `a/b`."""
     return path.replace("/", "><")
-
-
-@functools.cache
-def _documented() -> dict[str, Row]:
-    return rows_by_name(read_interface())
 
 
 # Gazebo simulates these, but no plugin of gazebo_plugins brings them to ROS.
