@@ -13,7 +13,7 @@ from workspace_needs.build_commands import catkin_make_isolated_words, catkin_ma
 from workspace_needs.places import hook
 from workspace_needs.tables import Tables
 from workspace_needs.verdicts import judge
-from workspace_needs.workspace import OUR_ADDRESS, WorkspaceError, source_folder
+from workspace_needs.workspace import OUR_ADDRESS, Package, WorkspaceError, source_folder
 from workspaces import add_package, add_plain, turtlebot3_style
 
 from workspace_needs import command, configuring
@@ -102,6 +102,18 @@ def test_a_debian_name_is_its_own_key(tmp_path, bare):
     found = of(source, "a")
     assert "no-such-library-dev" in found.lacks
     assert "libxdo-dev" in found.missing or "libxdo-dev" in found.lacks  # apt may have no lists
+
+
+def test_what_was_kept_is_not_read_by_a_package_that_has_changed(tmp_path, monkeypatch):
+    folder = tmp_path / "workspace_needs"
+    (folder / "cmake").mkdir(parents=True)
+    monkeypatch.setattr(configuring, "package_folder", lambda: folder)
+    package = Package("a", folder)
+    digests = []
+    for text in ("one", "two", "one"):
+        (folder / "cmake/what_is_asked.cmake").write_text(text, encoding="utf-8")
+        digests.append(configuring._digests({"a": package}, {"a": set()}, ["a"], [])["a"])
+    assert digests[0] == digests[2] != digests[1]
 
 
 def test_what_stops_every_build_tool_is_said_at_once(tmp_path, bare):

@@ -3,7 +3,7 @@
 CMake reads a CMakeLists.txt as the build will, whatever form its find_package has and in whichever
 folder it stands. A package that fails is configured once more with a dependency provider
 (cmake/what_is_asked.cmake) that names all that is absent. Results are kept until CMake files, names
-of files, include lines, Debian's packages or the sourced workspaces change.
+of files, include lines, Debian's packages, the sourced workspaces or this package change.
 """
 
 from __future__ import annotations
@@ -271,7 +271,10 @@ def _digests(packages: Mapping[str, Package], graph: Mapping[str, set[str]], ord
     machine = [*(field.name for field in fields(Configured)), *words, *hook(),
                os.environ.get("CMAKE_PREFIX_PATH", ""),
                str(DPKG.stat().st_mtime_ns if DPKG.exists() else 0)]
-    machine += [Path(word.partition("=")[2]).read_text("utf-8") for word in hook()]
+    deciding = (*sorted(Path(__file__).parent.glob("*.py")),  # they make results of CMake's words
+                package_folder() / "cmake/what_is_asked.cmake",
+                *(Path(word.partition("=")[2]) for word in hook()))
+    machine += [path.read_text("utf-8") for path in deciding]
     found: dict[str, str] = {}
     for name in order:
         package = packages[name]
