@@ -34,6 +34,12 @@ export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin
 
 # Sources the workspace, as a learner's terminal does with `source devel/setup.bash`.
 enter_workspace() {
+  local tried=  # catkin's setup.sh writes there, and ends with a traceback where it cannot
+  if ! { tried=$(mktemp /tmp/courses.XXXXXX) && head -c 65536 /dev/zero > "$tried"; } 2> /dev/null; then
+    [ -z "$tried" ] || rm -f "$tried"
+    fail $"/tmp is full, or cannot be written: make room there, then type this again"
+  fi
+  rm -f "$tried"
   set +u; . "$root/devel/setup.bash"; set -u
   export ROS_HOSTNAME=localhost  # works where the machine's own name does not resolve
   # roscore and roslaunch write to ~/.ros, and end if they cannot.
@@ -60,9 +66,28 @@ set_up_trial() {
   "$root/scripts/setup.sh" "${options[@]}" || exit 2
 }
 
-# Chooses a master that other terminals can join: the caller's, else the usual one, or a new one if that is another user's.
-# Fails, after a line that says why, if a simulator runs there.
+# Waits until no other command of this user is between its choice of a master and its simulator's start (take_turn in
+# run_session/master.py); $turn is the lock's descriptor.
+take_turn() {
+  local lock=${TMPDIR:-/tmp}/course_run-$(id -u).lock
+  exec {turn}< /dev/null  # where the file cannot be written, or leads elsewhere: without a turn
+  [ -L "$lock" ] || { exec {turn}<> "$lock"; } 2> /dev/null || return 0
+  flock -w 300 "$turn" || true
+}
+
+# Waits for the simulator of this process, and ends the turn; fails if the process ends before.
+wait_for_simulator() {
+  until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; do
+    kill -0 "$1" 2> /dev/null || return 1
+    sleep 0.2
+  done
+  exec {turn}>&-
+}
+
+# Takes the turn, and chooses a master that other terminals can join: the caller's, else the usual one, or a new one if
+# that is another user's. Fails, after a line that says why, if a simulator runs there.
 choose_master() {
+  take_turn
   local usual=http://localhost:11311
   if [ -n "${given_master[0]}" ] && [ "${given_master[0]%/}" != "$usual" ]; then
     export ROS_MASTER_URI=${given_master[0]}

@@ -10,7 +10,8 @@ end_with_terminal
 choose_master || exit 1
 set -- ackermann:=true command_timeout:=true "$@"
 if [ -n "${DISPLAY:-}" ]; then
-  exec roslaunch racecar_description car_control.launch "$@"
+  wait_for_simulator $$ &  # which roslaunch becomes
+  exec roslaunch racecar_description car_control.launch "$@" {turn}>&-
 fi
 if ! [ -t 0 ]; then
   echo $"drive: there is no screen (DISPLAY) and no terminal to read keys from; run it in a terminal" >&2
@@ -18,18 +19,15 @@ if ! [ -t 0 ]; then
 fi
 mkdir -p "$root/out"
 roslaunch racecar_description car_control.launch gui:=false keyboard:=false "$@" \
-  > "$root/out/drive.log" 2>&1 < /dev/null &
+  > "$root/out/drive.log" 2>&1 < /dev/null {turn}>&- &
 launched=$!
 # SIGTERM, as one in the background ignores SIGINT at first
 trap 'kill "$launched" 2> /dev/null || true; wait "$launched" || true' EXIT
 trap 'exit 130' TERM HUP
 echo $"The car is starting; the nodes' output is in out/drive.log."
-until rosservice list > /dev/null 2>&1; do
-  if ! kill -0 "$launched" 2> /dev/null; then
-    tail -n 5 "$root/out/drive.log" >&2
-    echo $"drive: the car did not start; the full output is in out/drive.log" >&2
-    exit 2
-  fi
-  sleep 0.2
-done
+if ! wait_for_simulator "$launched"; then
+  tail -n 5 "$root/out/drive.log" >&2
+  echo $"drive: the car did not start; the full output is in out/drive.log" >&2
+  exit 2
+fi
 rosrun car_control keyboard_control.py --terminal

@@ -33,20 +33,17 @@ if ! choose_master; then
 fi
 mkdir -p "$root/out"
 # Each ends with this shell, also one that is killed. By SIGTERM, as one in the background ignores SIGINT at first.
-setpriv --pdeathsig TERM roslaunch learning_topic 0course.launch gui:=false > "$root/out/viewer.log" 2>&1 < /dev/null &
+setpriv --pdeathsig TERM roslaunch learning_topic 0course.launch gui:=false > "$root/out/viewer.log" 2>&1 < /dev/null {turn}>&- &
 launched=$!
 page=
 trap 'kill $launched $page 2> /dev/null || true; wait $launched $page || true' EXIT
 trap 'exit 130' TERM HUP
 say $"The course is starting; its nodes' output is in out/viewer.log. Ctrl-C ends both course and page."
-until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; do
-  if ! kill -0 "$launched" 2> /dev/null; then
-    reasons "$root/out/viewer.log" || tail -n 5 "$root/out/viewer.log" >&2
-    echo $"viewer: the course did not start; the full output is in out/viewer.log" >&2
-    exit 2
-  fi
-  sleep 0.2
-done
+if ! wait_for_simulator "$launched"; then
+  reasons "$root/out/viewer.log" || tail -n 5 "$root/out/viewer.log" >&2
+  echo $"viewer: the course did not start; the full output is in out/viewer.log" >&2
+  exit 2
+fi
 running=$(page_line)
 if [ -n "$running" ]; then
   say "$running"

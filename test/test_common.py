@@ -22,6 +22,18 @@ def ros_home(home: Path | None) -> str:
     return done.stdout.strip()
 
 
+@pytest.mark.skipif(subprocess.run(["unshare", "-rm", "true"], check=False).returncode,
+                    reason="no namespaces")
+def test_a_full_tmp_is_one_line() -> None:
+    done = subprocess.run(
+        ["unshare", "-rm", "bash", "-c", "mount -t tmpfs -o size=64k tmpfs /tmp; cd scripts; "
+         "head -c 60k /dev/zero > /tmp/x; . ./common.sh; enter_workspace", ROOT / "scripts/a.sh"],
+        cwd=ROOT, text=True, capture_output=True, check=False,
+        env={**os.environ, "LC_ALL": "C.UTF-8", "LANGUAGE": "en"})
+    assert (done.returncode, done.stderr) == (
+        1, "a: /tmp is full, or cannot be written: make room there, then type this again\n")
+
+
 @pytest.mark.parametrize("has_ros", [True, False])
 def test_ros_writes_below_the_home(tmp_path: Path, has_ros: bool) -> None:
     if has_ros:

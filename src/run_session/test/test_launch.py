@@ -2,8 +2,11 @@
 
 import errno
 import os
+import subprocess
+import tempfile
 import threading
 import time
+from pathlib import Path
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
@@ -13,6 +16,8 @@ from run_session.failure import RunError
 from run_session.launch import Launched
 from run_session.master import free_port, is_up
 from run_session.processes import Family
+
+ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture
@@ -62,6 +67,25 @@ def test_a_home_that_is_full_is_not_written_to(tmp_path, monkeypatch):
         launched.start_roscore()
         assert is_up(launched.master_uri)
         assert os.environ["ROS_HOME"] == str(tmp_path / "log")  # this process's nodes write, too
+
+
+@pytest.mark.parametrize("joined", [False, True])
+def test_a_master_that_others_join_is_held_until_it_has_a_simulator(tmp_path, monkeypatch, joined):
+    """Else `make viewer`, started in the same second, would find none, and start its own there."""
+    found = []
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    monkeypatch.setattr(tempfile, "tempdir", None)
+    monkeypatch.setattr(launch, "may_simulate", lambda _uri: bool(found))
+    with Family() as family:
+        launched = Launched(family, tmp_path / "log", joined=joined)
+        launched.start_roscore()
+        script = f". {ROOT}/scripts/common.sh; flock() {{ command flock -n $3 || echo held; }}; "
+        command = ["bash", "-c", script + "take_turn"]
+        assert subprocess.run(command, capture_output=True, text=True,
+                              check=True).stdout == ("held\n" if joined else "")
+        found.append("/gazebo")
+        launched.check(None)
+        assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == ""
 
 
 @pytest.mark.parametrize("command", [

@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
+from bullet_sim_ros.already_running import may_simulate
 from run_session.failure import RunError
 from run_session.files import check_space
 from run_session.master import is_up, own_port, take_turn
@@ -43,7 +44,9 @@ class Launched:
         self.log_folder = log_folder
         _remove_logs(self.log_folder)
         self.log_folder.mkdir(parents=True)
-        # Held from choosing a port until roscore listens, so that no other run takes the same one.
+        # Held from choosing a port until roscore listens, so that no other run takes the same one;
+        # if others join this master, until it has a simulator, which make viewer then finds.
+        self._joined = joined
         turn = log_folder if alone else Path(tempfile.gettempdir())
         self._turn = take_turn(turn / f"course_run-{os.getuid()}.lock")
         self.port, self.why_not_callers = own_port(joined)  # the caller's master
@@ -68,7 +71,8 @@ class Launched:
             os.environ[name] = self._environment[name]
         self.start(Path(ROSCORE_LOG).stem, ["roscore", "-p", str(self.port)])
         self.wait_for("roscore", lambda: is_up(self.master_uri), ROSCORE_TIME)
-        self._turn.close()
+        if not self._joined:
+            self._turn.close()
 
     def start(self, name: str, command: list[str]) -> Child:
         """Start one more program of this run; its output goes to NAME.log."""
@@ -122,6 +126,8 @@ class Launched:
 
     def check(self, sim_time: float | None) -> None:
         """RunError if a process that the run needs has died, OSError if the disk is full, too."""
+        if not self._turn.closed and may_simulate(self.master_uri):
+            self._turn.close()
         when = f"before the {self._vehicle} drove"
         if sim_time is not None:
             when = f"at simulated time {sim_time:.1f} s"

@@ -114,6 +114,28 @@ def test_course_and_page_come_and_go_together(viewer, usual_port_free):
     assert "Traceback" not in log.read_text() and "make: ***" not in log.read_text()
 
 
+def test_of_two_that_start_at_once_the_second_says_that_the_first_runs(tmp_path):
+    uri, started = f"http://localhost:{free_port()}", []
+    for number in range(2):
+        with (tmp_path / str(number)).open("wb") as output:
+            started.append(subprocess.Popen(
+                ["make", "viewer", f"PORT={free_port()}"], cwd=ROOT, stdin=subprocess.DEVNULL,
+                stdout=output, stderr=subprocess.STDOUT, start_new_session=True,
+                env={**os.environ, "LC_ALL": "C.UTF-8", "ROS_MASTER_URI": uri}))
+    try:
+        until = time.monotonic() + LIMIT
+        while all(each.poll() is None for each in started) and time.monotonic() < until:
+            time.sleep(0.1)
+        ended = next(number for number in range(2) if started[number].poll() is not None)
+        assert SIMULATOR_RUNS.search((tmp_path / str(ended)).read_text())
+        address_in(tmp_path / str(1 - ended), started[1 - ended])
+    finally:
+        for each in started:
+            if each.poll() is None:
+                os.killpg(each.pid, signal.SIGINT)
+                each.wait(END_LIMIT)
+
+
 def family(process: int) -> list[psutil.Process]:
     """This process and all below it."""
     return [psutil.Process(process), *psutil.Process(process).children(recursive=True)]
