@@ -17,6 +17,7 @@ from evaluation.navigate_score import (
     lines,
     localisation,
     mapping_figures,
+    mismatch,
     seen_of,
     summarize,
     way,
@@ -237,3 +238,12 @@ def test_a_mistyped_option_is_one_line(arguments, said):
     with pytest.raises(RunError, match=said) as found:
         NavigationRun.parse(arguments)
     assert "\n" not in str(found.value)
+
+
+def test_a_map_of_another_world_is_said_at_the_start(capsys):
+    ground = load_house("house").ground()
+    walls = ground.walls
+    assert mismatch(ground, walls, np.zeros(3)) is None
+    other = find_package("nav_demo") / "map" / "nav.yaml"
+    NavigationRun(NavigationRun.parse(["--map", str(other)]))
+    assert f"--map {other}: the map does not fit this house: only 5% of" in capsys.readouterr().out

@@ -12,7 +12,7 @@ from evaluation.house import Watch, load_house
 from evaluation.live import LiveDrive, Outcome
 from evaluation.navigate_parts import Part, map_house, read_map_frame, visit_goals
 from evaluation.navigate_pictures import Film, map_picture
-from evaluation.navigate_score import Result, lines, reached, summarize
+from evaluation.navigate_score import Result, lines, mismatch, reached, summarize
 from evaluation.picture import write_png
 from evaluation.report import cell, write_json
 from evaluation.run_page import RUN_PAGE
@@ -68,6 +68,8 @@ class NavigationRun(LiveDrive):
                 self.result.map_in_world = read_map_frame(options.map)
             except MapFileError as error:
                 raise RunError(str(error)) from error
+            if fault := mismatch(self._ground, self.result.map, self.result.map_in_world):
+                self.progress.say(f"--map {options.map}: {fault}")
         self._watch: Watch | None = None
 
     def bring_up(self, launched: Launched) -> None:

@@ -27,6 +27,7 @@ LEAST_AGREEMENT = 0.95  # share
 MOST_OFF, MOST_OFF_DEG = 0.05, 2.0  # m and degrees, mean error of localisation
 MOST_MISS, MOST_MISS_DEG = 0.2, 20.0  # m and degrees from a goal that is reported reached
 MOST_UNSEEN = 1.0  # s, simulated, between two contact checks, in which it may drive 26 cm
+LEAST_OF_THE_HOUSE = 0.5  # share of a map's walls that are the house's; another world's has 0.05
 POSE_STEP = 10  # every tenth pose is checked for what the laser saw from there
 WAYS = {"mapping": ("way_points", "mapping", "way-point"),
         "goals": ("goals", "on the way to the goals", "goal")}  # key; part and goal in words
@@ -102,6 +103,15 @@ def mapping_figures(ground: Ground, built: OccupancyGrid, records: Records, angl
             "largest_m": round(trajectory.largest, 4), **asdict(agreement),
             "known_m2": round(float(free.sum() * built.resolution ** 2), 1),
             }, trajectory.alignment
+
+
+def mismatch(ground: Ground, built: OccupancyGrid, map_in_world: np.ndarray) -> str | None:
+    """A line about a map that is plainly not one of this house; else None."""
+    share = map_agreement(built, ground.walls, built_in_truth=map_in_world).occupied_near_walls
+    if share >= LEAST_OF_THE_HOUSE:
+        return None
+    return (f"the map does not fit this house: only {share:.0%} of its walls are where the house "
+            "has one. Was it made in another world? Without MAP= this run makes its own")
 
 
 def localisation(told: Sequence[float] | None, errors: np.ndarray) -> dict:
