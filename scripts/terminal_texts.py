@@ -58,6 +58,8 @@ OF_TK = ("no display name and no $DISPLAY environment variable",
 # Of expat, before a line and column.
 OF_EXPAT = ("not well-formed (invalid token)", "mismatched tag", "no element found",
             "unclosed token", "duplicate attribute", "junk after document element")
+# Of catkin, before expat's words.
+OF_CATKIN = ("The manifest contains invalid XML: {0}",)
 # Of Python's reader of scripts, in the words of 3.11 to 3.13.
 OF_PYTHON = (
     "invalid syntax", "invalid syntax. Perhaps you forgot a comma?",
@@ -247,6 +249,7 @@ def python_texts() -> dict[str, list[str]]:
     found |= {text: ["the system"] for text in OF_SYSTEM}
     found |= {text: ["Tk"] for text in OF_TK}
     found |= {text: ["expat"] for text in OF_EXPAT}
+    found |= {text: ["catkin"] for text in OF_CATKIN}
     found |= {text: ["Python"] for text in OF_PYTHON}
     found |= {text: ["PyYAML"] for text in OF_YAML}
     found |= {text: [CHECK] for text in OF_CHECK}

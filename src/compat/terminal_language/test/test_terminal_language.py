@@ -90,7 +90,7 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
     ("mark: a.yaml: missing key 'b'; there are: course, program, points, limits",
      "mark: a.yaml：没有键 'b'；可用的有：course, program, points, limits"),
     ("check_exercise: no exercise 'white_lane' (did you mean white_line?); there are: a, b",
-     "check_exercise: 没有练习 'white_lane'（是不是 white_line？）；有：a, b"),
+     "check_exercise: 没有练习 'white_lane'（是不是 white_line？）；可用的有：a, b"),
     ("Invalid XML: not well-formed (invalid token): line 1, column 27 (file len.urdf)",
      "Invalid XML: 格式不正确（无效符号）: 第 1 行第 27 列（文件 len.urdf）"),
     ("/a/movng.world not found (searched: /a) (did you mean moving.world?); there are: /a/moving",
@@ -110,6 +110,10 @@ def test_a_text_is_found_with_what_stands_around_it_and_in_it(english, chinese):
     ("target a: left out: a.cpp includes <gazebo/gazebo.hh>, and the C++ API of Gazebo is not here",
      "target a: 略去：a.cpp 包含 <gazebo/gazebo.hh>，而这里没有 Gazebo 的 C++ API"),
     ("3 packages: to be installed: a b", "3 个包：需要安装：a b"),
+    ("a/package.xml: The manifest contains invalid XML: not well-formed (invalid token): line 1, "
+     "column 28; mend it first, no package is built before",
+     "a/package.xml：不是有效的 XML：格式不正确（无效符号）: 第 1 行第 28 列；请先改好它，"
+     "在那之前一个包也不编译"),
     ("line 3", "第 3 行"),
     ("not well-formed (invalid token): line 1, column 28",
      "格式不正确（无效符号）: 第 1 行第 28 列"),
