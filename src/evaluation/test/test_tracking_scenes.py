@@ -6,6 +6,7 @@ The drives are those of kinematic_tracker.py: the simulator's own pictures, no p
 import math
 import runpy
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -88,11 +89,11 @@ def test_the_follower_keeps_its_distance(kind, tmp_path):
 
 def test_the_plain_tracker_reaches_what_stands(tmp_path):
     page = runpy.run_path(str(CONFIG.parents[1] / "scripts" / "visual_tracker.py"))
-    settings = load_settings(page["PageSettings"], CONFIG, "visual_tracker", {})
+    numbers = SimpleNamespace(**page["PAGE"])
 
     def law(picture: np.ndarray, _time: float) -> tuple[float, float]:
-        blob = page["largest_blob"](picture, settings)
-        return page["page_command"](blob, picture.shape[1], settings)
+        circle = page["largest_circle"](page["red_mask"](picture, numbers))
+        return page["command_to"](circle, picture.shape[1], numbers)
 
     assert chase(STATIC, 2, law, None, tmp_path).outcome == "reached"
 

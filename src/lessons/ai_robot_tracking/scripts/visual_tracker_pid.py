@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Follows a red cylinder at a distance with PID; searches when it is lost; parameters change live.
+"""visual_tracker.py with more: PID keeps a distance, a search, frozen images, live parameters.
 
-用 PID 保持距离跟踪红色圆柱；丢失后先朝最后看到的一侧找；参数可在运行时修改。
+比 visual_tracker.py 多出：用 PID 保持距离；丢失后先朝最后看到的一侧找；识别卡住的图像；
+参数可在运行时修改。
 """
 
 import cv2

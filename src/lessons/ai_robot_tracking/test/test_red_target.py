@@ -1,12 +1,13 @@
 """What is seen in drawn pictures: mask, blobs, bearing, distance, form; and the law of the page."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
 import pytest
+import yaml
 from ai_robot_tracking.red_target import (
-    Blob,
     Colour,
     bearing_of,
     distance_of,
@@ -16,8 +17,9 @@ from ai_robot_tracking.red_target import (
     split_off,
 )
 from drawn_room import HEIGHT, HFOV, ORANGE, RADIUS, SIZE, cylinder, draw_cylinder, room
-from node_basics.settings import load_settings
-from visual_tracker import PageSettings, largest_blob, page_command
+from visual_tracker import PAGE as NUMBERS
+from visual_tracker import command_to, largest_circle
+from visual_tracker import red_mask as page_mask
 
 NARROW = Colour(175, 5, 120, 18)
 PAGE = Colour(0, 10, 100, 100)
@@ -99,11 +101,15 @@ def test_a_low_thing_behind_is_split_off():
 
 
 CONFIG = Path(__file__).resolve().parents[1] / "config" / "tracking_params.yaml"
-SETTINGS = load_settings(PageSettings, CONFIG, "visual_tracker", {})
+SETTINGS = SimpleNamespace(**NUMBERS)
 
 
 def at(error, radius):
-    return Blob(0, 0, 10, 10, 320 + error, 240, radius, 100)
+    return 320 + error, 240, radius
+
+
+def test_the_launch_files_config_has_the_numbers_of_the_script():
+    assert yaml.safe_load(CONFIG.read_text(encoding="utf-8"))["visual_tracker"] == NUMBERS
 
 
 @pytest.mark.parametrize(("error", "radius", "speed"), [
@@ -113,16 +119,17 @@ def at(error, radius):
     (0, 24, 0.15), (300, 11, 0.15),                 # far
 ])
 def test_speeds(error, radius, speed):
-    assert page_command(at(error, radius), 640, SETTINGS) == (speed, pytest.approx(-0.005 * error))
+    assert command_to(at(error, radius), 640, SETTINGS) == (speed, pytest.approx(-0.005 * error))
 
 
 def test_without_a_target_it_turns_on_the_spot():
-    assert page_command(None, 640, SETTINGS) == (0.0, 0.5)
-    assert page_command(at(-100, 10), 640, SETTINGS) == (0.0, 0.3)  # too small
+    assert command_to(None, 640, SETTINGS) == (0.0, 0.5)
+    assert command_to(at(-100, 10), 640, SETTINGS) == (0.0, 0.3)  # too small
 
 
 def test_the_largest_is_the_target():
-    assert largest_blob(room(), SETTINGS) is None
-    blob = largest_blob(draw_cylinder(cylinder(3.0, 0.4), 1.2, -0.3), SETTINGS)
-    assert blob.column > 160
-    assert page_command(blob, 320, SETTINGS)[1] < 0
+    assert largest_circle(page_mask(room(), SETTINGS)) is None
+    picture = draw_cylinder(cylinder(3.0, 0.4), 1.2, -0.3)
+    circle = largest_circle(page_mask(picture, SETTINGS))
+    assert circle[0] > 160
+    assert command_to(circle, 320, SETTINGS)[1] < 0

@@ -9,23 +9,20 @@ import pytest
 from ai_robot_tracking import parameters
 from ai_robot_tracking.follower import FollowerSettings
 from node_basics.settings import SettingsError, load_settings
-from visual_tracker import PageSettings
 
 CONFIG = Path(__file__).resolve().parents[1] / "config" / "tracking_params.yaml"
-SECTIONS = {"visual_tracker": PageSettings, "visual_tracker_pid": FollowerSettings}
 
 
-@pytest.mark.parametrize("section", SECTIONS)
-def test_the_file_has_every_key(section):
-    settings = load_settings(SECTIONS[section], CONFIG, section, {})
+def test_the_file_has_every_key():
+    settings = load_settings(FollowerSettings, CONFIG, "visual_tracker_pid", {})
     assert all(isinstance(getattr(settings, entry.name), float) for entry in fields(settings))
 
 
 def test_one_value_in_place_of_all_parameters_is_refused(monkeypatch):
     rospy = MagicMock()
-    rospy.get_param.return_value, rospy.get_name.return_value = 3, "/visual_tracker"
+    rospy.get_param.return_value, rospy.get_name.return_value = 3, "/visual_tracker_pid"
     monkeypatch.setattr(parameters, "rospy", rospy)
-    with pytest.raises(SettingsError, match="rosparam delete /visual_tracker"):
+    with pytest.raises(SettingsError, match="rosparam delete /visual_tracker_pid"):
         parameters.own_parameters()
 
 

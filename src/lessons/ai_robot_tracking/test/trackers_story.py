@@ -58,8 +58,8 @@ class TrackersStory(unittest.TestCase):
     def wait_for_standing(self, why):
         wait_until(lambda: self.relay.stands, f"standing: {why}")
 
-    def check_bad_images(self):
-        for mode, word in SAID.items():
+    def check_bad_images(self, modes):
+        for mode, word in ((each, SAID[each]) for each in modes):
             self.relay.said.clear()
             self.relay.spoil(mode)
             wait_until(lambda w=word: self.relay.warnings([w, "/relay/image_raw"]), f"{mode} said")
@@ -83,13 +83,13 @@ class TrackersStory(unittest.TestCase):
 
     def test_1_plain_tracker(self):
         self.drive("visual_tracker.py")
-        self.check_bad_images()
+        self.check_bad_images((BLANK, WRONG_STEP, NONE))
         self.check_e_stop()
         self.check_kill()
 
     def test_2_pid_tracker(self):
         self.drive("visual_tracker_pid.py")
-        self.check_bad_images()
+        self.check_bad_images(SAID)
         self.check_e_stop()
         client = Client("visual_tracker_pid", timeout=LIMIT)
         still = {"max_speed": 0.0, "max_reverse": 0.0, "max_turn": 0.0, "search_turn": 0.0}
@@ -108,12 +108,14 @@ class TrackersStory(unittest.TestCase):
         self.wait_for_standing("Ctrl-C")
 
     def test_4_a_wrong_parameter_is_one_line(self):
-        node = start("visual_tracker_pid.py", "_kp_trun:=1.0", "__name:=mistyped")
-        said, _ = node.communicate(timeout=LIMIT)
-        self.assertEqual(node.returncode, 1)
-        self.assertIn("unknown key 'kp_trun'", said)
-        self.assertFalse(rospy.has_param("/mistyped/kp_trun"), "it would stay for the next run")
-        self.assertNotIn("Traceback", said)
+        for script, names in (("visual_tracker_pid.py", "unknown key 'kp_trun'"),
+                              ("visual_tracker.py", "unknown parameter, or no number: 'kp_trun'")):
+            node = start(script, "_kp_trun:=1.0", "__name:=mistyped")
+            said, _ = node.communicate(timeout=LIMIT)
+            self.assertEqual(node.returncode, 1)
+            self.assertIn(names, said)
+            self.assertFalse(rospy.has_param("/mistyped/kp_trun"), "it would stay for the next run")
+            self.assertNotIn("Traceback", said)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from node_basics.settings import number
 
 from ai_robot_tracking.red_target import (
     Blob,
-    RedSettings,
+    Colour,
     bearing_of,
     distance_of,
     find_blobs,
@@ -58,9 +58,14 @@ LEAP = 0.5            # rad, or share of the distance: a larger jump means anoth
 
 
 @dataclass(frozen=True)
-class FollowerSettings(RedSettings):
+class FollowerSettings:
     """Section visual_tracker_pid of the parameter file: colour bounds, and the PID's parameters."""
 
+    hue_low: float = number(0, 180, "0..180; larger than hue_high: the range passes through 180")
+    hue_high: float = number(0, 180, "0..180")
+    saturation_low: float = number(0, 255, "0..255")
+    value_low: float = number(0, 255, "0..255")
+    least_radius: float = number(0, 1000, "px; smaller blobs are ignored")
     target_radius: float = number(0.01, 10, "m, of the cylinder")
     target_height: float = number(0.01, 10, "m")
     camera_hfov: float = number(0.1, 3.0, "rad")
@@ -78,6 +83,11 @@ class FollowerSettings(RedSettings):
     search_turn: float = number(0, 10, "rad/s")
     search_angle: float = number(0, 3.1, "rad to each side before it turns all the way round")
     image_timeout: float = number(0.05, 60, "s without a new image until it stops")
+
+    @property
+    def colour(self) -> Colour:
+        """The mask's colour bounds."""
+        return Colour(self.hue_low, self.hue_high, self.saturation_low, self.value_low)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from node_basics.settings import number
 
 KERNEL = np.ones((3, 3), np.uint8)
 PASSES = 2  # of erosion, then of dilation, to remove specks
@@ -26,22 +25,6 @@ class Colour:
     hue_high: float
     saturation_low: float
     value_low: float
-
-
-@dataclass(frozen=True)
-class RedSettings:
-    """The parameters shared by both trackers' sections of the parameter file."""
-
-    hue_low: float = number(0, 180, "0..180; larger than hue_high: the range passes through 180")
-    hue_high: float = number(0, 180, "0..180")
-    saturation_low: float = number(0, 255, "0..255")
-    value_low: float = number(0, 255, "0..255")
-    least_radius: float = number(0, 1000, "px; smaller blobs are ignored")
-
-    @property
-    def colour(self) -> Colour:
-        """The mask's colour bounds."""
-        return Colour(self.hue_low, self.hue_high, self.saturation_low, self.value_low)
 
 
 @dataclass(frozen=True)

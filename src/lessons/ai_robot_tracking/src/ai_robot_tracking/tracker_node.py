@@ -1,4 +1,4 @@
-"""Shared by both trackers: images in, commands out, and a stop whenever that is safer."""
+"""Around visual_tracker_pid.py's law: images in, commands out, a stop whenever that is safer."""
 
 from __future__ import annotations
 
