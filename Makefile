@@ -1,5 +1,5 @@
 # Every command is a script in scripts/; run a script itself to get its own exit code.
-verbs = setup course race viewer drive lane track avoid navigate autorace mark deps build report clean help \
+verbs = setup course race viewer drive lane track avoid navigate autorace mark shell deps build report clean clean-root help \
   test lint race-trials track-trials lane-trials navigation-trials localisation-trials bench-lanes bench fuzz chaos soak mutants check-releases deb
 .PHONY: $(verbs)
 .DEFAULT_GOAL = help
@@ -79,6 +79,9 @@ mark: ## drive each submission in a sandbox, and mark it SUBMISSIONS=DIR [COURSE
 	  $(if $(filter-out 0 no false,$(FILM)),--film) $(if $(filter-out 0 no false,$(RESUME)),--resume) \
 	  $(if $(OUT),--out "$$OUT") $(WHERE)
 
+shell: ## a terminal in which the lessons' commands work, also on a Linux that is not Debian
+	@scripts/shell.sh
+
 deps: ## install the Debian packages that a workspace depends on [WS=~/catkin_ws]
 	@scripts/deps.sh $(if $(WS),"$$WS")
 
@@ -90,6 +93,9 @@ report: ## write out/report.txt for a bug report: versions, this machine, which 
 
 clean: ## remove what was installed and built here (out/ stays, except out/test/)
 	@scripts/clean.sh
+
+clean-root: ## remove the Debian that a Linux which is not Debian has for this
+	@scripts/debian_root.sh --remove
 
 help: ## list the commands
 	@scripts/help.sh

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Removes what setup, build and tests made in this folder; the rest of out/ and Debian's packages stay.
+on_any_linux=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$root"
 rm -rf .venv .setup build devel install out/test .pytest_cache .ruff_cache .catkin_workspace __pycache__

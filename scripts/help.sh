@@ -6,6 +6,7 @@
 #   scripts/help.sh --no-option COMMAND WORD...   the same of an option
 #   scripts/help.sh --no-switch NAME=...       says what these options may be
 #   scripts/help.sh --no-number NAME=VALUE...  the same of the first that is no number, if any; all four for the Makefile
+on_any_linux=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
 # The Makefile's lines for that mark, in the locale's language: $"..." takes constants, so each is made one.

@@ -3,6 +3,7 @@
 #
 # Of a setting it has one of some known values, and of a log the kinds of errors and the places in our packages and in
 # Debian's, as all else may name people, machines or passwords. What `make mark` wrote is not read.
+on_any_linux=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 state=$root/.setup venv=$root/.venv tests=no
 lines=20  # of each verb's errors, the last
@@ -17,6 +18,7 @@ known() {
 # What setup would still do, as it finds out itself; each line begins with the subject.
 how_far_setup_came() {
   local told file
+  is_served || { say "setup: in a Debian of its own, which is $([ -e /var/lib/ros1-driving-courses/complete ] && echo there || echo missing)"; return; }
   (check_machine) 2>/dev/null || { say "setup: not for this machine or folder; make setup says why"; return; }
   check_machine
   told=$(missing_packages | xargs)

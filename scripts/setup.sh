@@ -56,5 +56,6 @@ python_packages
 [ "$did" = yes ] && say $"Set up in ${SECONDS} s." || say $"Nothing to set up."
 [ "$bashrc" = no ] || source_in_bashrc
 if [ "$did$build" = yesyes ] && ! grep -qsxF "$(bashrc_line)" "${HOME:-}/.bashrc"; then
-  say $"In each new terminal type: source $root/devel/setup.bash (make setup BASHRC=1 writes this line into ~/.bashrc)"
+  line=$(terminal_line)
+  say $"In each new terminal type: $line (make setup BASHRC=1 writes this line into ~/.bashrc)"
 fi

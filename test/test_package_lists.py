@@ -122,21 +122,6 @@ def test_setup_takes_each_platform(platform, tmp_path):
     assert (done.returncode, done.stdout, done.stderr) == (0, f"{platform}\n", "")
 
 
-@pytest.mark.parametrize(("os_release", "architecture", "said"), [
-    ('ID=debian\nPRETTY_NAME="Debian GNU/Linux forky/sid"\nVERSION_CODENAME=forky\n', "amd64",
-     "forky"),
-    ('ID=debian\nPRETTY_NAME="Debian GNU/Linux 11"\nVERSION_CODENAME=bullseye\n', "amd64", "11"),
-    ('ID=ubuntu\nID_LIKE=debian\nPRETTY_NAME="Ubuntu 24.04"\nVERSION_CODENAME=noble\n', "amd64",
-     "Ubuntu 24.04"),
-    ('ID=fedora\nPRETTY_NAME="Fedora Linux 43"\nVERSION_CODENAME=""\n', "amd64", "Fedora"),
-])
-def test_an_unknown_release_is_one_line_with_what_is_served(os_release, architecture, said,
-                                                            tmp_path):
-    done = check(tmp_path, os_release, architecture)
-    assert done.returncode == 1 and done.stderr.count("\n") == 1 and said in done.stderr
-    names = [row["name"].removeprefix("Debian ") for row in TABLE.data["releases"].values()]
-    assert f"Debian {' and '.join(names)}" in done.stderr and "docker/" in done.stderr
-
 
 @pytest.mark.parametrize("architecture", ["armhf", "riscv64", "i386"])
 def test_an_architecture_without_builds_is_one_line_with_what_is_missing(architecture, tmp_path):

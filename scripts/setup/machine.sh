@@ -1,14 +1,11 @@
 # Step 1: checks what setup cannot change.
 
-served=$"Debian 12 and 13"
 builds_only_for=$"amd64 and arm64 (64-bit Intel, AMD or ARM)"
 
 # Sets `platform`, such as bookworm-amd64, and `lists`, the folder with its package lists.
 check_machine() {
-  local id='' codename='' name='' architecture
-  [ -r /etc/os-release ] && eval "$(. /etc/os-release; printf 'id=%q codename=%q name=%q' "${ID:-}" "${VERSION_CODENAME:-}" "${PRETTY_NAME:-}")"
-  compgen -G "$root/dependencies/${codename:-none}-*" >/dev/null && [ "$id" = debian ] ||
-    fail $"this is ${name:-no Debian}, but this needs the ROS packages of $served: use one of these, or docker/ in this repository"
+  local codename architecture
+  codename=$(. /etc/os-release; echo "$VERSION_CODENAME")  # one of dependencies/: common.sh
   architecture=$(dpkg --print-architecture)
   platform=$codename-$architecture lists=$root/dependencies/$codename-$architecture
   [ -d "$lists" ] ||

@@ -63,13 +63,16 @@ same_packages() {
 packages_in() { head -1 "$1"; awk '/package.xml$/ {print $2}' "$1"; }
 # What makes each new terminal one of this workspace; of several clones the last one that asked for it.
 bashrc_mark="# ros1-driving-courses"
-bashrc_line() { printf '%s' "source $root/devel/setup.bash  $bashrc_mark"; }
+# In a Debian of its own (debian_root.sh) ROS is not there for the machine's terminals: a word enters one in there.
+terminal_line() { [ -e /etc/ros1-driving-courses ] && echo "alias courses='make -sC $root shell'" || echo "source $root/devel/setup.bash"; }
+bashrc_line() { printf '%s' "$(terminal_line)  $bashrc_mark"; }
 source_in_bashrc() {
-  local file=${HOME:-}/.bashrc
-  if grep -qsxF "$(bashrc_line)" "$file"; then say $"$file has this line already: source $root/devel/setup.bash"; return; fi
+  local file=${HOME:-}/.bashrc line
+  line=$(terminal_line)
+  if grep -qsxF "$(bashrc_line)" "$file"; then say $"$file has this line already: $line"; return; fi
   if [ -e "$file" ] && { [ ! -w "$file" ] || ! sed -i --follow-symlinks "/$bashrc_mark\$/d" "$file" 2>/dev/null; }; then
-    fail $"$file cannot be written: type in each new terminal: source $root/devel/setup.bash"
+    fail $"$file cannot be written: type in each new terminal: $line"
   fi
-  { [ ! -s "$file" ] || [ -z "$(tail -c 1 "$file")" ] || echo; bashrc_line; echo; } 2>/dev/null >>"$file" || fail $"$file cannot be written: type in each new terminal: source $root/devel/setup.bash"
-  say $"Written into $file: source $root/devel/setup.bash. It holds for each new terminal."
+  { [ ! -s "$file" ] || [ -z "$(tail -c 1 "$file")" ] || echo; bashrc_line; echo; } 2>/dev/null >>"$file" || fail $"$file cannot be written: type in each new terminal: $line"
+  say $"Written into $file: $line. It holds for each new terminal."
 }

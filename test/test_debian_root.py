@@ -1,0 +1,195 @@
+"""On a Linux that is not Debian the scripts run in a Debian of their own: debian_root.sh."""
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+DEBIAN = 'ID=debian\nPRETTY_NAME="Debian GNU/Linux {0}"\nVERSION_CODENAME={0}\n'
+UBUNTU = 'ID=ubuntu\nID_LIKE=debian\nPRETTY_NAME="Ubuntu 24.04.1 LTS"\nVERSION_CODENAME=noble\n'
+FEDORA = 'ID=fedora\nPRETTY_NAME="Fedora Linux 43"\nVERSION_CODENAME=""\n'
+
+
+class Machine:
+    """A copy of the scripts on a machine with another /etc/os-release, /var/lib and programs."""
+
+    def __init__(self, folder: Path, os_release: str):
+        self.folder, self.place = folder, folder / "var"
+        self.programs = folder / "programs"
+        self.programs.mkdir()
+        shutil.copytree(ROOT / "scripts", folder / "scripts",
+                        ignore=shutil.ignore_patterns("__pycache__"))
+        for release in ("bookworm-amd64", "trixie-amd64"):
+            (folder / "dependencies" / release).mkdir(parents=True)
+        (folder / "os-release").write_text(os_release)
+        (folder / "debian-archive-keyring.gpg").touch()
+        for script in (folder / "scripts").glob("*.sh"):
+            text = script.read_text("utf-8")
+            for old, new in (("/etc/os-release", f"{folder}/os-release"),
+                             ("PATH=/usr/local/sbin", f"PATH={self.programs}:/usr/local/sbin"),
+                             ("/var/lib/ros1-driving-courses", str(self.place)),
+                             ("rule=/etc/sudoers.d/", f"rule={folder}/sudoers-"),
+                             ("/usr/share/keyrings", str(folder))):
+                text = text.replace(old, new)
+            script.write_text(text)
+        self.program("id", '[ "$*" = -u ] && echo 1000 || exec /usr/bin/id "$@"')
+        self.program("visudo", "exit 0")
+        self.program("debootstrap", 'for new in "$@"; do case $new in *.new) break;; esac; done\n'
+                     'mkdir -p "$new/etc/apt" "$new/etc/sudoers.d"; echo "$@" > "$new/made"\n'
+                     'echo "deb http://archive bookworm main" > "$new/etc/apt/sources.list"')
+        # With its own variables; the installed program needs the rule.
+        self.program("sudo", f'''
+while [[ $1 == -* ]]; do case $1 in -kn) exit 1;; -n) [ "$2" = -l ] || {{ shift; continue; }}
+  [ -e {folder}/sudoers-ros1-driving-courses ]; exit;; *) shift;; esac; done
+exec env "$@"''')
+        self.program("enter", "")
+
+    def program(self, name: str, text: str) -> None:
+        """A stand-in that the scripts find first."""
+        path = self.programs / name
+        path.write_text(f"#!/bin/bash\n{text}\n")
+        path.chmod(0o755)
+
+    def run(self, *words: str, **variables: str) -> subprocess.CompletedProcess:
+        """scripts/WORD..."""
+        return subprocess.run(
+            [f"scripts/{words[0]}", *words[1:]], cwd=self.folder, text=True, capture_output=True,
+            env={**os.environ, "LANGUAGE": "en", **variables}, timeout=60, check=False)
+
+    def forget_what_root_does(self) -> None:
+        """What is entered says how it was called, and its environment, instead."""
+        (self.folder / "scripts/setup/enter_debian.sh").write_text(
+            '#!/bin/bash\ntr "\\0" "\\n" < "$2" | grep "^GREETING"; rm "$2"; echo "$1" "${@:3}"\n')
+
+
+@pytest.mark.parametrize("os_release", [DEBIAN.format("bookworm"), DEBIAN.format("trixie")])
+def test_on_a_debian_that_is_served_nothing_is_entered(tmp_path, os_release):
+    machine = Machine(tmp_path, os_release)
+    (tmp_path / "scripts/course.sh").write_text("#!/bin/bash\n. scripts/common.sh; echo here\n")
+    assert machine.run("course.sh").stdout == "here\n"
+
+
+@pytest.mark.parametrize("os_release", [
+    UBUNTU, FEDORA, DEBIAN.format("forky"), DEBIAN.format("bullseye"), ""])
+def test_elsewhere_a_debian_is_made_once_and_the_script_runs_in_it(tmp_path, os_release):
+    machine = Machine(tmp_path, os_release)
+    machine.forget_what_root_does()
+    first = machine.run("course.sh", "--laps", "2 3", GREETING="good day")
+    assert first.returncode == 0, first.stderr
+    entered = f"GREETING=good day\n{tmp_path} {tmp_path}/scripts/course.sh --laps 2 3\n"
+    assert first.stdout.endswith(entered)
+    assert "has no ROS 1: a Debian 12 goes into" in first.stdout
+    made = (machine.place / "debian/made").read_text()
+    assert f"--keyring={tmp_path}/debian-archive-keyring.gpg" in made and "bookworm" in made
+    assert (machine.place / "debian/etc/apt/sources.list").read_text() == (
+        "deb http://archive bookworm main\ndeb http://archive bookworm-updates main\n")
+    again = machine.run("course.sh", "--laps", "2 3", GREETING="good day")
+    assert (again.returncode, again.stdout) == (0, entered)
+
+
+def test_the_rule_lets_this_user_enter_without_a_password_and_do_nothing_else(tmp_path):
+    machine = Machine(tmp_path, UBUNTU)
+    machine.forget_what_root_does()
+    assert machine.run("course.sh").returncode == 0
+    user = subprocess.run(["id", "-un"], text=True, capture_output=True, check=True).stdout.strip()
+    rule = (tmp_path / "sudoers-ros1-driving-courses").read_text().splitlines()
+    assert rule[1] == f"{user} ALL=(root) NOPASSWD: {machine.place}/enter"
+    # A second user is let in beside the first.
+    machine.program("id", '[ "$*" = -u ] && echo 1000 || echo other')
+    shutil.copy(machine.folder / "scripts/setup/enter_debian.sh", machine.place / "enter")
+    (machine.place / "folders").write_text("")
+    assert machine.run("course.sh").returncode == 0
+    assert (tmp_path / "sudoers-ros1-driving-courses").read_text().splitlines() == [
+        *rule, f"other ALL=(root) NOPASSWD: {machine.place}/enter"]
+    # In there sudo asks as it does outside, where it did.
+    inner = machine.place / "debian/etc/sudoers.d/ros1-driving-courses"
+    assert inner.read_text() == f"{user} ALL=(ALL) ALL\nother ALL=(ALL) ALL\n"
+
+
+def test_a_folder_that_is_not_in_there_yet_is_added(tmp_path):
+    machine = Machine(tmp_path, UBUNTU)
+    machine.forget_what_root_does()
+    assert machine.run("course.sh", HOME="/home/one").returncode == 0
+    before = (machine.place / "folders").read_text().split()
+    assert machine.run("course.sh", HOME="/schools/home/two").returncode == 0
+    after = (machine.place / "folders").read_text().split()
+    assert "/home" in before and set(after) == {*before, "/schools/home/two"}
+
+
+@pytest.mark.parametrize(("program", "text", "said"), [
+    ("debootstrap", "echo 'E: Failed getting release file'; exit 1",
+     "debootstrap could not make a Debian: E: Failed getting release file"),
+    ("df", "printf 'x\\nx x x 100\\n'", "100 MB free, 3300 MB are needed"),
+    ("sudo", "echo 'sudo: a password is required' >&2; exit 1", "a password is required"),
+    ("uname", "echo riscv64", "needs Linux on a 64-bit Intel, AMD or ARM processor"),
+])
+def test_what_fails_is_said_and_the_next_call_goes_on(tmp_path, program, text, said):
+    machine = Machine(tmp_path, UBUNTU)
+    machine.forget_what_root_does()
+    kept = (machine.programs / program).read_text() \
+        if (machine.programs / program).exists() else None
+    machine.program(program, text)
+    done = machine.run("course.sh")
+    assert done.returncode != 0 and said in done.stderr.splitlines()[-1]
+    assert not (machine.place / "complete").exists()
+    assert not list(Path(os.environ.get("TMPDIR", "/tmp")).glob(f"{machine.folder.name}*"))
+    (machine.programs / program).unlink()
+    if kept:
+        machine.program(program, kept)
+    assert machine.run("course.sh").returncode == 0
+
+
+def test_it_is_removed_by_one_command(tmp_path):
+    machine = Machine(tmp_path, UBUNTU)
+    machine.forget_what_root_does()
+    assert machine.run("course.sh").returncode == 0
+    done = machine.run("debian_root.sh", "--remove")
+    assert done.returncode == 0 and not machine.place.exists()
+    assert not (tmp_path / "sudoers-ros1-driving-courses").exists()
+    assert machine.run("debian_root.sh", "--remove").stdout == "There is no Debian to remove.\n"
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="root alone may mount and change its root folder")
+def test_who_enters_is_the_user_in_the_same_folders(tmp_path):
+    debian = tmp_path / "debian"
+    for folder in ("etc", "bin", "work"):
+        (debian / folder).mkdir(parents=True)
+    for name in ("passwd", "shadow", "group"):
+        (debian / "etc" / name).write_text("nobody:old:line\n")
+    programs = [Path(shutil.which(name)).resolve() for name in ("bash", "env", "id", "cat", "rm")]
+    libraries = subprocess.run(["ldd", *programs], text=True, capture_output=True, check=True)
+    needed = {word for word in libraries.stdout.split() if word.startswith("/") and word[-1] != ":"}
+    for path in [*programs, *map(Path, needed)]:
+        target = debian / "bin" / path.name if path in programs else debian / str(path)[1:]
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, target)
+    (debian / "usr").mkdir(exist_ok=True)
+    (debian / "usr/bin").symlink_to("../bin")
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    (mine / "file").write_text("the machine's own\n")
+    for folder in (tmp_path, *tmp_path.parents):
+        folder.chmod(folder.stat().st_mode | 0o055) if folder.owner() == "root" and \
+            folder.is_relative_to("/tmp/pytest-of-root") else None
+    (tmp_path / "folders").write_text(f"{mine}\n")
+    enter = tmp_path / "enter"
+    shutil.copy(ROOT / "scripts/setup/enter_debian.sh", enter)
+    environment = mine / "environment"
+    environment.write_bytes(b"GREETING=good day\0PATH=/bin\0")
+    os.chown(environment, 65534, 65534)
+    os.chown(mine, 65534, 65534)
+    done = subprocess.run(
+        [enter, mine, environment, "bash", "-c", 'id -u; pwd; cat file; echo "$GREETING"; exit 7'],
+        env={"SUDO_UID": "65534"}, text=True, capture_output=True, timeout=60, check=False)
+    assert done.stdout.splitlines() == ["65534", str(mine), "the machine's own", "good day"], \
+        done.stderr
+    assert done.returncode == 7 and not environment.exists()
+    assert not os.path.ismount(debian / str(mine)[1:])
+    assert ":/bin/bash\n" in (debian / "etc/passwd").read_text()
+    assert "old" not in (debian / "etc/passwd").read_text()
+    refused = subprocess.run([enter, "/", "x", "true"], env={}, text=True, capture_output=True,
+                             check=False)
+    assert refused.returncode == 2 and "by sudo" in refused.stderr
