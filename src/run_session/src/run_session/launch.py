@@ -57,6 +57,7 @@ class Launched:
             ROS_LOG_DIR=str(self.log_folder),
             ROS_HOME=str(self.log_folder),  # not ~/.ros, which may be on a full disk
             PYTHONUNBUFFERED="1",
+            LANGUAGE="en",  # lines of the logs are looked for; what is shown of them is translated
             **environment,
         )
         self._children: list[Child] = []
