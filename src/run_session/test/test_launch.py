@@ -62,11 +62,11 @@ def test_time_that_stands_still_ends_the_run(tmp_path):
 def test_the_logs_are_in_english_whatever_the_terminal_speaks(tmp_path, monkeypatch):
     monkeypatch.setenv("LC_ALL", "C.UTF-8")
     monkeypatch.setenv("LANGUAGE", "zh_CN")
-    said = "from terminal_language import translated; print(translated('no image'))"
+    said = "from terminal_language import translated; print(translated('true or false'))"
     with Family() as family:
         launched = Launched(family, tmp_path / "log")
         launched.run("course", [sys.executable, "-c", said], 30)
-    assert (tmp_path / "log/course.log").read_text() == "no image\n"
+    assert (tmp_path / "log/course.log").read_text() == "true or false\n"
 
 
 def test_a_home_that_is_full_is_not_written_to(tmp_path, monkeypatch):
