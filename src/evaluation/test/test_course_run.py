@@ -112,7 +112,7 @@ def start(tmp_path) -> Iterator[Callable[..., Run]]:
             os.kill(pid, signal.SIGKILL)
 
 
-def test_closed_laps_are_reported_and_drawn(start):
+def test_closed_laps_are_reported_and_kept_by_a_run_that_fails(start):
     run = start(*FAKE, "--laps", "2", "--launch-arg", "factor:=15")
     assert run.wait() == 0, run.output
     report = json.loads((run.out / "report.json").read_text())
@@ -123,42 +123,31 @@ def test_closed_laps_are_reported_and_drawn(start):
     assert 0 <= report["frames_dropped"] < report["frames_sent"]
     assert report["versions"]["numpy"]
     assert cv2.imread(str(run.out / "path.png")).shape[1] == 1400
+    before = (run.out / "report.json").read_bytes()
+    run = start(*FAKE, "--launch-arg", "behaviour:=no_car", "--startup-timeout", "15")
+    assert run.wait() == 2
+    assert "the car (model turtlebot3_waffle) was not there" in run.last_line
+    assert not (run.out / "report.json").exists()
+    assert (run.out / "earlier" / "report.json").read_bytes() == before
 
 
-def test_a_drive_is_filmed(start):
-    run = start(*FILMED, "--duration", "12", "--launch-arg", "factor:=2")
-    assert run.wait() == 1, run.output  # no lap yet
-    film = cv2.VideoCapture(str(run.out / "run.mp4"))
-    assert film.read()[0]
-    filmed_s = film.get(cv2.CAP_PROP_FRAME_COUNT) * 0.2  # a busy machine may miss some pictures
-    assert 6 < filmed_s < 13
+FAST_S = 12  # s, simulated
 
 
-def test_runs_that_begin_together_have_masters_of_their_own(tmp_path):
+@pytest.fixture(scope="module")
+def fast_runs(tmp_path_factory) -> list[tuple[Run, dict]]:
+    """Two equal ones at a time, each with a master of its own; and their reports."""
     runs = []
-    for number in range(3):
-        (tmp_path / str(number)).mkdir()
-        runs.append(Run(tmp_path / str(number) / "course", *FAKE, "--duration", "2"))
+    for name in ("one", "another"):
+        out = tmp_path_factory.mktemp(name) / "course"
+        runs.append(Run(out, *FILMED, "--fast", "--duration", str(FAST_S), "--seed", "2"))
     try:
-        assert [run.wait() for run in runs] == [1, 1, 1]  # no lap yet
-        for run in runs:
-            assert "simulated s are over" in run.output, run.output
+        assert [run.wait() for run in runs] == [1, 1], runs[0].output + runs[1].output  # no lap yet
     finally:
         for run in runs:
             run.process.kill()
             run.process.wait()
-
-
-def test_the_report_shows_followers_side_by_side(start):
-    slow = ("--duration", "3")
-    assert start(*FAKE, *slow, "--follower", "05follower_proporation.py").wait() == 1
-    run = start(*FAKE, *slow, "--follower", "06follower_pid.py")
-    assert run.wait() == 1
-    report = json.loads((run.out / "report.json").read_text())
-    assert list(report["followers"]) == ["05follower_proporation.py", "06follower_pid.py"]
-    assert "> 06follower_pid.py" in run.output and "  05follower_proporation.py" in run.output
-    assert "3 simulated s are over" in run.last_line
-    assert not (run.out / "run.mp4").exists()
+    return [(run, report_of(run)) for run in runs]
 
 
 def report_of(run: Run) -> dict:
@@ -169,48 +158,35 @@ def report_of(run: Run) -> dict:
     return report
 
 
-def test_fast_runs_are_equal_to_the_last_figure(start):
-    reports = []
-    for _ in range(2):
-        run = start(*FILMED, "--fast", "--duration", "30", "--seed", "2")
-        assert run.wait() == 1, run.output
-        reports.append(report_of(run))
-    assert reports[0] == reports[1]
-    assert reports[0]["frames_sent"] == 902 and reports[0]["frames_dropped"] == 0
-    assert reports[0]["fast"] and reports[0]["seed"] == 2
-    assert len(reports[0]["drive_sha256"]) == 64
-    run = start(*FAKE, "--fast", "--duration", "30", "--seed", "3")
-    assert run.wait() == 1, run.output
-    assert report_of(run)["drive_sha256"] != reports[0]["drive_sha256"]
+def test_fast_runs_are_equal_to_the_last_figure(fast_runs):
+    (_, report), (_, other) = fast_runs
+    assert report == other
+    assert report["frames_sent"] == 30 * FAST_S + 2 and report["frames_dropped"] == 0
+    assert report["fast"] and report["seed"] == 2
+    assert len(report["drive_sha256"]) == 64
 
 
-def test_time_begins_when_all_are_connected(start):
-    run = start(*FAKE, "--fast", "--duration", "5", "--launch-arg", "behaviour:=late")
+def test_a_drive_is_filmed_and_the_report_shows_followers_side_by_side(fast_runs):
+    run = Run(fast_runs[0][0].out, *FILMED, "--duration", "6", "--launch-arg", "factor:=2",
+              "--follower", "06follower_pid.py")
     assert run.wait() == 1, run.output
     report = json.loads((run.out / "report.json").read_text())
-    assert report["frames_sent"] == 152 and report["frames_dropped"] == 0
-    assert "without a command" not in run.output
+    assert list(report["followers"]) == ["05follower_proporation.py", "06follower_pid.py"]
+    assert "> 06follower_pid.py" in run.output and "  05follower_proporation.py" in run.output
+    assert "6 simulated s are over" in run.last_line
+    film = cv2.VideoCapture(str(run.out / "run.mp4"))
+    assert film.read()[0]
+    filmed_s = film.get(cv2.CAP_PROP_FRAME_COUNT) * 0.2  # a busy machine may miss some pictures
+    assert 3 < filmed_s < 8
 
 
-def test_the_last_image_is_waited_for(start):
-    run = start(*FAKE, "--fast", "--duration", "5", "--launch-arg", "behaviour:=delays",
-                "--launch-arg", "after:=0.752")
+def test_another_seed_is_another_drive_and_the_launch_file_is_told_all(fast_runs):
+    before, other = fast_runs[1]
+    run = Run(before.out, *FAKE, "--fast", "--camera", "64x48", "--seed", "7",
+              "--duration", str(FAST_S))
     assert run.wait() == 1, run.output
-    report = json.loads((run.out / "report.json").read_text())
-    assert report["frames_sent"] == 152 and report["frames_dropped"] == 0
-
-
-def test_a_fast_follower_that_does_not_answer_is_told(start):
-    run = start(*FAKE, "--fast", "--duration", "2", "--launch-arg", "behaviour:=mute")
-    assert run.wait() == 1, run.output
-    report = json.loads((run.out / "report.json").read_text())
-    assert 0 < report["frames_dropped"] < report["frames_sent"]
-    assert f"{report['frames_dropped']} images without a command" in run.output
-
-
-def test_the_launch_file_is_told_what_was_asked_for(start):
-    run = start(*FAKE, "--fast", "--camera", "64x48", "--seed", "7", "--duration", "1")
-    assert run.wait() == 1, run.output
+    assert report_of(run)["drive_sha256"] != other["drive_sha256"]
+    assert not (run.out / "run.mp4").exists()
     log = (run.out / "log" / "roslaunch.log").read_text()
     asked = ast.literal_eval(re.search("asked for (.*)", log)[1])
     assert asked == {
@@ -221,6 +197,23 @@ def test_the_launch_file_is_told_what_was_asked_for(start):
         "camera_width": 64,
         "camera_height": 48,
     }
+
+
+def test_time_begins_when_all_are_connected_and_the_last_image_is_waited_for(start):
+    run = start(*FAKE, "--fast", "--duration", "5", "--launch-arg", "behaviour:=late_delays",
+                "--launch-arg", "after:=0.752")
+    assert run.wait() == 1, run.output
+    report = json.loads((run.out / "report.json").read_text())
+    assert report["frames_sent"] == 152 and report["frames_dropped"] == 0
+    assert "without a command" not in run.output
+
+
+def test_a_fast_follower_that_does_not_answer_is_told(start):
+    run = start(*FAKE, "--fast", "--duration", "2", "--launch-arg", "behaviour:=mute")
+    assert run.wait() == 1, run.output
+    report = json.loads((run.out / "report.json").read_text())
+    assert 0 < report["frames_dropped"] < report["frames_sent"]
+    assert f"{report['frames_dropped']} images without a command" in run.output
 
 
 def test_the_report_comes_before_the_film_and_a_second_ctrl_c_ends_that(
@@ -242,15 +235,6 @@ def test_the_report_comes_before_the_film_and_a_second_ctrl_c_ends_that(
     report = json.loads((run.out / "report.json").read_text())
     assert report["outcome"] == "ended early" and report["film"] is None
     assert not (run.out / "run.mp4").exists()
-
-
-def test_results_of_the_run_before_are_kept(start, tmp_path):
-    assert start(*FAKE).wait() == 0
-    first = (tmp_path / "course" / "report.json").read_bytes()
-    none = ("--launch-arg", "behaviour:=no_car", "--startup-timeout", "3")
-    assert start(*FAKE, *none).wait() == 2
-    assert not (tmp_path / "course" / "report.json").exists()
-    assert (tmp_path / "course" / "earlier" / "report.json").read_bytes() == first
 
 
 def test_a_folder_of_somebody_else_s_logs_is_not_removed(start, tmp_path):
@@ -286,7 +270,6 @@ def test_a_bad_drive_ends_with_1_and_says_where(start, behaviour, words):
             (),
             "the follower 05follower_proporation.py (process follower-2) died (exit code 3)",
         ),
-        ("no_car", ("--startup-timeout", "15"), "the car (model turtlebot3_waffle) was not there"),
         ("pauses", ("--stuck-timeout", "12"), "simulated time has stood still at 6.7 s"),
         ("hangs", ("--stuck-timeout", "12"), "the simulator is paused or hangs"),
     ],
@@ -314,6 +297,7 @@ def test_a_killed_part_ends_the_run_with_2(start, pattern, words):
     assert run.wait() == 2
     assert run.last_line.startswith(f"course_run: {words}")
     assert "SIGKILL" in run.last_line and "at simulated time" in run.last_line
+    assert "Traceback" not in run.output
     assert "log: " in run.last_line
 
 

@@ -23,7 +23,7 @@ def main() -> None:
         if behaviour != "mute" or image.header.seq % MUTE_NUMBER:
             commands.publish(Twist())
 
-    if behaviour == "late":
+    if "late" in behaviour:
         time.sleep(LATE)
     if behaviour != "blind":
         rospy.Subscriber("/camera/rgb/image_raw", Image, answer, queue_size=1)

@@ -99,7 +99,7 @@ class FakeSimulator:
             moved = Odometry(header=image.header)
             moved.pose.pose = self.pose
             odometry.publish(moved)
-            if self._behaviour == "delays" and self.time * SPEED > self._after:
+            if "delays" in self._behaviour and self.time * SPEED > self._after:
                 time.sleep(DELAY)
             self._answered.clear()
             info.publish(CameraInfo(header=image.header))

@@ -103,7 +103,7 @@ class Family:
             while self._living():
                 if time.monotonic() > until:
                     break
-                time.sleep(0.02)
+                time.sleep(0.1)  # each look reads all of /proc
             else:
                 return
 
