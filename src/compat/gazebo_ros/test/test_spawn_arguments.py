@@ -2,6 +2,8 @@
 
 import io
 import math
+import subprocess
+import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -216,3 +218,9 @@ def test_a_file_that_cannot_be_read(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "read_bytes", fails)
     with pytest.raises(model_source.SourceError, match=f"Error reading file {path}: .*Permission"):
         load("-file", str(path))
+
+
+def test_it_starts_without_numpy():
+    """Which would be half of its start."""
+    code = "import sys, gazebo_ros.spawning; print('numpy' in sys.modules)"
+    assert subprocess.check_output([sys.executable, "-c", code], text=True) == "False\n"
