@@ -26,11 +26,13 @@ HERE = Path(__file__).parent
 LIMIT = 60.0  # s, wall, for what takes 2 s on a quiet machine
 
 
-@pytest.fixture(autouse=True)
-def on_path(monkeypatch):
+@pytest.fixture(autouse=True, scope="module")
+def on_path():
     """Processes find the trial."""
     before = filter(None, [str(HERE), os.environ.get("PYTHONPATH", "")])
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(before))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", os.pathsep.join(before))
+        yield
 
 
 def run(out, *words):
@@ -234,6 +236,11 @@ class Cluster:
             "--local-directory", str(self._folder)))
         return self.workers[-1]
 
+    def worker(self):
+        """One that lives, from a test before or a new one."""
+        living = [each for each in self.workers if each.poll() is None]
+        return living[0] if living else self.add_worker()
+
     def _start(self, what, *words):
         with (self._folder / f"{what}.log").open("ab") as log:
             return subprocess.Popen([sys.executable, "-m", "dask", what, *words],
@@ -245,11 +252,9 @@ class Cluster:
             each.wait()
 
 
-@pytest.fixture
-def cluster(tmp_path, on_path):
-    folder = tmp_path / "cluster"
-    folder.mkdir()
-    made = Cluster(folder)
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory, on_path):
+    made = Cluster(tmp_path_factory.mktemp("cluster"))
     yield made
     made.end()
 
@@ -277,24 +282,39 @@ def test_a_killed_workers_cases_are_tried_elsewhere_and_its_processes_end(tmp_pa
     killed = cluster.add_worker()
     until(lambda: sleepers(seconds))
     cluster.add_worker()
-    os.kill(killed.pid, signal.SIGKILL)
+    killed.kill()
+    killed.wait()
     ends_well(trial, out, 6, seconds)
 
 
 def test_a_cut_connection_of_program_or_worker_loses_and_doubles_nothing(
         tmp_path, cluster, proxy):
     seconds, out = 0.5625, tmp_path / "out"
-    cluster.add_worker()
-    cluster.add_worker(proxy.address)
+    cluster.worker()
+    behind_proxy = cluster.add_worker(proxy.address)
     trial = start(out, "--scheduler", proxy.address, "--naps", 8, "--seconds", seconds)
     until(lambda: (out / "report.json").exists() and sleepers(seconds))
     proxy.cut()
     ends_well(trial, out, 8, seconds)
+    behind_proxy.kill()
+    behind_proxy.wait()
+
+
+def test_ctrl_c_frees_the_workers(tmp_path, cluster):
+    seconds, out = 20.3125, tmp_path / "out"
+    worker = cluster.worker()
+    trial = start(out, "--scheduler", cluster.address, "--seconds", seconds)
+    until(lambda: sleepers(seconds))
+    trial.send_signal(signal.SIGTERM)
+    trial.communicate(timeout=LIMIT)
+    assert trial.returncode == INTERRUPTED
+    until(lambda: not sleepers(seconds))
+    assert worker.poll() is None
 
 
 def test_a_scheduler_that_goes_away_ends_the_run_and_keeps_what_is_done(tmp_path, cluster):
     seconds, out = 0.3125, tmp_path / "out"
-    cluster.add_worker()
+    cluster.worker()
     trial = start(out, "--scheduler", cluster.address, "--naps", 50, "--seconds", seconds)
     until((out / "report.json").exists)
     cluster.scheduler.kill()
@@ -303,15 +323,3 @@ def test_a_scheduler_that_goes_away_ends_the_run_and_keeps_what_is_done(tmp_path
     assert errors.splitlines()[-1].endswith("--resume goes on"), errors
     assert 0 < len(names(out)) < 50
     until(lambda: not sleepers(seconds))
-
-
-def test_ctrl_c_frees_the_workers(tmp_path, cluster):
-    seconds, out = 20.3125, tmp_path / "out"
-    worker = cluster.add_worker()
-    trial = start(out, "--scheduler", cluster.address, "--seconds", seconds)
-    until(lambda: sleepers(seconds))
-    trial.send_signal(signal.SIGTERM)
-    trial.communicate(timeout=LIMIT)
-    assert trial.returncode == INTERRUPTED
-    until(lambda: not sleepers(seconds))
-    assert worker.poll() is None
