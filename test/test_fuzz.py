@@ -19,7 +19,7 @@ USUAL = 100  # of each other target: about a minute of processor time in all
 
 @pytest.fixture(scope="module")
 def fuzz(modules):
-    return modules("fuzz", "campaign", "page", "pictures", "targets")
+    return modules("fuzz", "campaign", "page", "pictures", "sandbox", "targets")
 
 
 @pytest.mark.parametrize("name", [
@@ -63,7 +63,7 @@ def test_every_form_and_map_is_read_before_it_is_spoilt(fuzz):
     ("lambda path: [0] * 2**30", "MemoryError"), ("lambda path: spin()", "hangs"),
     ("lambda path: refuse('a\\nb')", "more than a line"), ("lambda path: refuse('a')", None),
     ("lambda path: refuse(' ')", "without a word"), ("lambda path: None", None)])
-def test_each_kind_of_fault_is_noticed(fuzz, read, fault):
+def test_each_kind_of_fault_is_noticed(fuzz, monkeypatch, read, fault):
     import os
     from dataclasses import replace
 
@@ -74,6 +74,7 @@ def test_each_kind_of_fault_is_noticed(fuzz, read, fault):
         while True:
             pass
 
+    monkeypatch.setattr(fuzz["sandbox"], "LIMIT", 0.4)  # s
     spoilt = replace(fuzz["targets"].TARGETS["ogre"], refusals=(KeyboardInterrupt,),
                      read=eval(read, {"os": os, "spin": spin, "refuse": refuse}))
     found = fuzz["campaign"].replay(spoilt, b"x")

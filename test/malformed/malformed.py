@@ -22,11 +22,16 @@ from large_texts import LARGE
 from spoilt_parts import PARTS
 from workspace_needs.check import command
 
+from bullet_sim_ros.interface import documented
+from bullet_sim_ros.plugins import register_plugins
+
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "test/fuzz"))
 
 from mutating import malformed  # noqa: E402
 
+register_plugins()  # once, and not in the process of each file
+documented()
 PACKAGES = rospkg.RosPack()
 STYLES = ROOT / "src/sim/bullet_sim_ros/test/styles"
 LIMIT = 5.0  # s, of processor time: other work on the machine counts nothing
