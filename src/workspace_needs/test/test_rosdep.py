@@ -19,25 +19,31 @@ from workspace_needs import apt
 ROSDEP = Path(__file__).resolve().parents[1] / "scripts/rosdep"
 
 
+@pytest.fixture(scope="module")
+def home(tmp_path_factory):
+    """It is empty at first: one cache is made for all tests."""
+    return tmp_path_factory.mktemp("home")
+
+
 @pytest.fixture
-def rosdep(tmp_path):
+def rosdep(tmp_path, home, monkeypatch):
     """Runs it; exit code, output and errors."""
-    home = tmp_path / "home"
-    home.mkdir()
-    # A proxy at a closed port: whatever asks the network fails.
-    nowhere = dict.fromkeys(("http_proxy", "https_proxy"), "http://127.0.0.1:9")
-    environment = {**os.environ, **nowhere, "HOME": str(home), "ROS_DISTRO": "Debian"}
+    monkeypatch.setenv("HOME", str(home))
+    monkeypatch.setenv("ROS_DISTRO", "Debian")
+    for name in ("http_proxy", "https_proxy"):  # at a closed port: what asks the network fails
+        monkeypatch.setenv(name, "http://127.0.0.1:9")
     for name in ("ROS_HOME", "ROSDEP_SOURCE_PATH", "ROSDISTRO_INDEX_URL"):
-        environment.pop(name, None)
+        monkeypatch.delenv(name, raising=False)
 
     def run(*words: str) -> tuple[int, str, str]:
         done = subprocess.run([sys.executable, str(ROSDEP), *words], capture_output=True, text=True,
-                              env=environment, cwd=tmp_path, timeout=60, check=False)
+                              cwd=tmp_path, timeout=60, check=False)
         return done.returncode, done.stdout, done.stderr
     return run
 
 
-def test_without_init_update_and_network(rosdep, tmp_path):
+def test_without_init_update_and_network(rosdep, tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
     assert rosdep("resolve", "roscpp")[1].split()[:2] == ["#apt", "libroscpp-dev"]
     assert rosdep("resolve", "bullet_sim_ros")[0] == 0
     code, said, _ = rosdep("update")

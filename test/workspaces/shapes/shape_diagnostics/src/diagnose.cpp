@@ -1,7 +1,5 @@
 #include <angles/angles.h>
-#include <diagnostic_msgs/DiagnosticArray.h>
-#include <interactive_markers/interactive_marker_server.h>
-#include <ros/ros.h>
+#include <diagnostic_msgs/DiagnosticStatus.h>
 #include <cstdio>
 
 int main() {
