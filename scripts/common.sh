@@ -23,8 +23,8 @@ if [ "$(id -u)" = 0 ] && [ -z "${stays_root:-}" ] && [ -n "${SUDO_USER:-}" ] && 
   exec sudo -u "$SUDO_USER" -H -- "$root/scripts/$(basename "$0")" "$@"
 fi
 
-# On a Linux that is none of the Debians in dependencies/ the script runs in a Debian of its own.
-is_served() { compgen -G "$root/dependencies/$(. /etc/os-release 2>/dev/null && [ "${ID:-}" = debian ] && echo "${VERSION_CODENAME:-}")-*" >/dev/null; }
+# On a Linux that is none of the Debians in dependencies/ (which an installed package lacks) a Debian of its own runs the script.
+is_served() { [ ! -d "$root/dependencies" ] || compgen -G "$root/dependencies/$(. /etc/os-release 2>/dev/null && [ "${ID:-}" = debian ] && echo "${VERSION_CODENAME:-}")-*" >/dev/null; }
 [ -n "${on_any_linux:-}" ] || is_served || exec "$root/scripts/debian_root.sh" "$(basename "$0")" "$@"
 
 # The ROS master that the caller set, for scripts that use it.
