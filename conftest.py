@@ -13,6 +13,7 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).parent / "scripts"))
 
 from run_tests_files import (  # noqa: F401  hooks
+    MARK,
     ROOT,
     pytest_addoption,
     pytest_collect_file,
@@ -23,7 +24,8 @@ from run_tests_files import (  # noqa: F401  hooks
     rostest_scripts,
 )
 
-if "PYTEST_XDIST_WORKER" not in os.environ:  # whose controller has made them
+# Of a worker its controller has made them, of a file with a process of its own the run around it.
+if "PYTEST_XDIST_WORKER" not in os.environ and os.environ.get(MARK, "").count("/") < 2:
     runpy.run_path(str(ROOT / "src/sim/bullet_sim/src/bullet_sim/props.py"), run_name="__main__")
     made = ["name_packages"]  # for after a `git pull`; takes 0.7 s
     if (ROOT / "src/compat/turtlebot3_gazebo").is_dir():
