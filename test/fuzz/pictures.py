@@ -21,8 +21,7 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.meshes.generated import heightmap_parts, image_part
 from bullet_sim.meshes.images import PNG, load_image, warn_if_unreadable
 from map_server.errors import MapFileError
-from map_server.image import read_image
-from map_server.map_files import read_map
+from map_server.map_files import read_image, read_map
 
 GREY = np.indices((64, 80)).sum(axis=0).astype(np.uint8)
 GREY[20:40, 20:60] = 0

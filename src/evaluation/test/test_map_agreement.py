@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from evaluation.map_agreement import map_agreement
+from evaluation.navigate_score import map_agreement
 from evaluation.trajectory_error import align, at_moments, trajectory_error
 from nav_algorithms.cells import OccupancyGrid
 from nav_algorithms.poses import compose, invert

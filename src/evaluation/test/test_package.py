@@ -12,7 +12,7 @@ import rospkg
 PACKAGE = Path(__file__).resolve().parent.parent
 SOURCE = PACKAGE / "src" / "evaluation"
 SHARED = {"case_process", "command_line", "film", "house", "lap", "lap_trial", "live",
-          "map_agreement", "picture", "report", "start", "trajectory_error", "trial",
+          "picture", "report", "start", "trajectory_error", "trial",
           "run_page", "workers"}  # what trials stand on
 TRIALS = [{"course_run"}, {"race_trials"}, {"avoid"}, {"lane_trials", "lane_encounters"},
           {"track", "track_score", "track_trials"}, {"autorace", "autorace_judge"},

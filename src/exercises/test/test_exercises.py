@@ -12,8 +12,8 @@ from types import SimpleNamespace
 import pytest
 import yaml
 
-from exercises import node
 from exercises.catalogue import find_exercises
+from exercises.checks import nodes
 from exercises.finding import Mistake
 from exercises.main import main
 
@@ -142,7 +142,7 @@ def test_a_node_that_has_ended_is_a_mistake():
     child = SimpleNamespace(process=SimpleNamespace(poll=lambda: 1),
                             last_lines=lambda _count: "no turtle here\n")
     with pytest.raises(Mistake, match=r"^mine\.py: ended, exit code 1: no turtle here$"):
-        node.wait(Path("mine.py"), child, lambda: False, 1.0)
+        nodes.wait(Path("mine.py"), child, lambda: False, 1.0)
 
 
 def test_a_loop_without_end_is_one_line(tmp_path):

@@ -21,7 +21,7 @@ from trial_record import localisation_error, way
 from trial_session import Session, TrialError
 from trial_venue import LASER, LASER_ANGLES, LASER_REACH, VENUES, Truth, prepare
 
-from evaluation.map_agreement import map_agreement
+from evaluation.navigate_score import map_agreement
 from map_server.map_files import read_map
 from nav_algorithms.poses import compose
 from trial_worlds.house import visible_walls

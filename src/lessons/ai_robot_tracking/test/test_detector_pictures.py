@@ -13,9 +13,8 @@ from ai_robot_tracking.training.dataset import (
     read_sets,
     write_set,
 )
-from ai_robot_tracking.training.drawing import draw_picture, draw_stage
+from ai_robot_tracking.training.drawing import Stage, draw_picture, draw_stage
 from ai_robot_tracking.training.main import main
-from ai_robot_tracking.training.staging import Stage
 from ai_robot_tracking.training.things import MAKERS, Thing, bar, box, coloured
 
 from bullet_sim.description import SceneDescription

@@ -5,8 +5,8 @@ from unittest.mock import MagicMock
 import numpy as np
 import pytest
 from ai_robot_tracking import tracker_node
-from ai_robot_tracking.image_check import BadImage, ImageCheck, decode
 from ai_robot_tracking.red_target import Colour, all_red
+from ai_robot_tracking.tracker_node import BadImage, ImageCheck, decode
 from drawn_room import cylinder, room
 from sensor_msgs.msg import Image
 

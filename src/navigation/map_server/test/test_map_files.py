@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 import pytest
 
-from map_server import image, map_files
+from map_server import map_files
 from map_server.errors import MapFileError, MapImageError, MapMetadataError, MapMissingError
 from map_server.files import read_file
 from map_server.map_files import read_map, write_map
@@ -193,7 +193,7 @@ def test_damaged_and_enormous_images(tmp_path, capfd, content, said):
 
 
 def test_enormous_is_also_what_only_the_decoded_image_says(tmp_path, monkeypatch):
-    monkeypatch.setattr(image, "LARGEST", 3)
+    monkeypatch.setattr(map_files, "LARGEST", 3)
     with pytest.raises(MapImageError, match="2 x 2 pixels are too many"):
         read_map(write(tmp_path, np.zeros((2, 2), np.uint8), name="map.bmp"))
 
@@ -331,7 +331,7 @@ def test_a_description_that_is_no_plain_file(endless):
 
 
 def test_a_file_too_large_for_an_image(tmp_path, monkeypatch):
-    monkeypatch.setattr(image, "LARGEST_FILE", 1 << 20)
+    monkeypatch.setattr(map_files, "LARGEST_FILE", 1 << 20)
     with open(tmp_path / "map.pgm", "wb") as file:
         file.truncate(1 << 28)  # a hole: takes no room
     with pytest.raises(MapImageError, match="more than 1 MiB; save it as PNG"):

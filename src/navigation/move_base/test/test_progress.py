@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from move_base.progress import Progress
+from move_base.navigator import Progress
 
 PATH = np.column_stack((np.linspace(0, 2, 41), np.zeros(41), np.zeros(41)))
 

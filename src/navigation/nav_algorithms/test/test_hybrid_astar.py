@@ -21,7 +21,7 @@ from nav_algorithms.global_planning.motion_primitives import (
     change_cost,
     cost_of,
 )
-from nav_algorithms.local_planning.path_segments import cut
+from nav_algorithms.local_planning.pure_pursuit import cut
 from nav_algorithms.poses import wrap_angle
 
 CAR = np.array([[-0.1, -0.15], [-0.1, 0.15], [0.45, 0.15], [0.45, -0.15]])

@@ -8,7 +8,7 @@ from nav_algorithms.costmap.costs import LETHAL, UNKNOWN
 from nav_algorithms.local_planning.following import Following, within
 from nav_algorithms.local_planning.goal import Arrival, StopAndTurn
 from nav_algorithms.local_planning.oscillation import Oscillation
-from nav_algorithms.local_planning.path_segments import cut
+from nav_algorithms.local_planning.pure_pursuit import cut
 from nav_algorithms.local_planning.velocities import samples, slowed, turning, window
 
 

@@ -4,6 +4,9 @@ CMake reads a CMakeLists.txt as the build will, whatever form its find_package h
 folder it stands. A package that fails is configured once more with a dependency provider
 (cmake/what_is_asked.cmake) that names all that is absent. Results are kept until CMake files, names
 of files, include lines, Debian's packages, the sourced workspaces or this package change.
+
+To know a compiler CMake compiles two programs, and one to know its threads: a quarter of the time
+for a small package. So what it found is kept for the packages that it configures later.
 """
 
 from __future__ import annotations
@@ -12,6 +15,7 @@ import contextlib
 import hashlib
 import json
 import os
+import platform
 import re
 import shutil
 import signal
@@ -25,10 +29,14 @@ from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 from workspace_needs.build_cause import in_one_line
-from workspace_needs.compilers import Compilers, chooses
 from workspace_needs.places import hook, kept_folder, package_folder
 from workspace_needs.workspace import Package, WorkspaceError
 
+FOUND = "CMakeFiles/[0-9]*/CMake*.cmake"  # of a build folder, by CMake's version
+CACHE = "CMakeCache.txt"
+THREADS = re.compile(r"^CMAKE_HAVE_LIBC_PTHREAD:INTERNAL=.*$", re.MULTILINE)
+VARIABLES = ("CC", "CXX", "CPPFLAGS", "CFLAGS", "CXXFLAGS", "LDFLAGS")  # of the environment
+CHOICE = re.compile(r"\bCMAKE_C(XX)?_COMPILER\b|TOOLCHAIN")
 LIMIT = 300.0  # s, wall, for one package; some fetch sources while they are configured
 MOST_KEPT = 4000  # results
 LEFT_OUT = re.compile(r": target (\S+) is left out: (.+?)\. What the simulator has in its place")
@@ -39,6 +47,48 @@ QUERY = ".cmake/api/v1/query/codemodel-v2"  # CMake's file API answers into ../.
 RULE = re.compile(r"^(\S+): (\S+)$", re.MULTILINE)  # of a Makefile without commands
 CHOICES = ("-DCATKIN_WHITELIST_PACKAGES", "-DCATKIN_BLACKLIST_PACKAGES")  # what is built, not how
 DPKG = Path("/var/lib/dpkg/status")
+
+
+class Compilers:
+    """The compilers that CMake takes with these -D options, unless a package chooses others."""
+
+    def __init__(self, words: Iterable[str]):
+        tools = [shutil.which(name) for name in ("cmake", "cc", "c++")]
+        known = (platform.release(), [(tool, tool and os.stat(tool).st_mtime_ns) for tool in tools],
+                 [os.environ.get(name) for name in VARIABLES],
+                 [word for word in words if word.startswith("-DCMAKE_")])
+        self._folder = kept_folder("compilers") / hashlib.sha256(repr(known).encode()).hexdigest()
+
+    def put_into(self, build: Path) -> None:
+        """Gives a new build folder what is known."""
+        if (self._folder / CACHE).is_file():
+            shutil.copytree(self._folder, build, dirs_exist_ok=True)
+
+    def keep(self, build: Path) -> None:
+        """Adds what CMake has found out in a build folder; what is longer is more complete."""
+        with contextlib.suppress(OSError):
+            threads = THREADS.findall((build / CACHE).read_text("utf-8"))
+            texts = {path.relative_to(build): path.read_text("utf-8") for path in build.glob(FOUND)}
+            texts[Path(CACHE)] = "\n".join(["CMAKE_PLATFORM_INFO_INITIALIZED:INTERNAL=1", *threads])
+            for name, text in texts.items():
+                place = self._folder / name
+                if not place.exists() or place.stat().st_size < len(text.encode()):
+                    _replace(place, text)
+
+
+def chooses(files: Iterable[Path]) -> bool:
+    """Whether a package's CMake files may name a compiler."""
+    return any(CHOICE.search(path.read_text("utf-8", "replace")) for path in files
+               if path.name == "CMakeLists.txt" or path.suffix == ".cmake")
+
+
+def _replace(place: Path, text: str) -> None:
+    """Writes a file that others may be reading."""
+    place.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile("w", dir=place.parent, prefix=".", encoding="utf-8",
+                                     delete=False) as file:
+        file.write(text)
+    os.replace(file.name, place)
 
 
 @dataclass(frozen=True)

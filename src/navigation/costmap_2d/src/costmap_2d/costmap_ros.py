@@ -13,7 +13,6 @@ import rospy
 
 from costmap_2d.map_input import MapInput
 from costmap_2d.publishing import CostmapPublisher
-from costmap_2d.sensors import Sensors
 from costmap_2d.settings import (
     INFLATION,
     STATIC,
@@ -25,7 +24,7 @@ from costmap_2d.settings import (
     read_settings,
     table,
 )
-from costmap_2d.sources import MessageAge
+from costmap_2d.sources import MessageAge, Sensors
 from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.costmap.footprint import circle, padded
 from nav_algorithms.costmap.inflation import InflationLayer

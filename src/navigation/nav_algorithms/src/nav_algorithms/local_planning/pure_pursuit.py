@@ -1,5 +1,7 @@
 """Regulated pure pursuit, for cars: follows the path as planned, including backwards.
 
+The path is cut where the vehicle changes its kind of motion.
+
 R. Coulter, "Implementation of the pure pursuit path tracking algorithm" (1992); S. Macenski et al.,
 "Regulated pure pursuit for robot path tracking" (2023), whose parameters have these names.
 """
@@ -15,15 +17,54 @@ from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.local_planning.following import STANDSTILL
 from nav_algorithms.local_planning.free_arcs import free_arc, space
 from nav_algorithms.local_planning.goal import turned
-from nav_algorithms.local_planning.path_segments import ON_THE_SPOT, Piece, cut
 from nav_algorithms.local_planning.velocities import Command, Limits, turning
 from nav_algorithms.poses import compose, relative, wrap_angle
 
+FORWARD, BACKWARD, ON_THE_SPOT = 1, -1, 0
 AHEAD = 1.0       # m along the path that are searched for the vehicle's position
 DONE = 0.02       # m before its end where a piece is finished
 ENOUGH = 0.15     # m before its end where it is finished if something is in the way
 STEERED = 0.3     # of the maximum curvature: wheels that are farther off are still being steered
 STEERING_TIME = 0.6  # s, for which a piece may begin slowly because of that
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Poses (M, 3), M >= 2, driven FORWARD or BACKWARD, or turned ON_THE_SPOT.
+
+    `lengths` (M,): m driven from the first pose to each; on the spot, rad turned.
+    """
+
+    poses: np.ndarray
+    direction: int
+    lengths: np.ndarray
+
+
+def cut(path: np.ndarray) -> list[Piece]:
+    """The pieces of a path (N, 3); empty if nothing moves.
+
+    A step is driven backwards if the next pose is behind, seen along the mean of both headings,
+    and is a turn if only the heading changes.
+    """
+    path = np.asarray(path, float)
+    steps = np.diff(path[:, :2], axis=0)
+    turns = wrap_angle(np.diff(path[:, 2]))
+    middle = path[:-1, 2] + 0.5 * turns
+    ahead = steps[:, 0] * np.cos(middle) + steps[:, 1] * np.sin(middle)
+    sizes = np.hypot(*steps.T)
+    kinds = np.where(sizes > 1e-6, np.where(ahead >= 0.0, FORWARD, BACKWARD), ON_THE_SPOT)
+    moves = np.nonzero((sizes > 1e-6) | (np.abs(turns) > 1e-6))[0]
+    found: list[Piece] = []
+    begin = 0
+    for n in range(1, len(moves) + 1):
+        if n == len(moves) or kinds[moves[n]] != kinds[moves[begin]]:
+            kind = int(kinds[moves[begin]])
+            chosen = moves[begin:n]
+            poses = np.vstack((path[chosen[0]], path[chosen + 1]))
+            size = np.abs(turns[chosen]) if kind == ON_THE_SPOT else sizes[chosen]
+            found.append(Piece(poses, kind, np.append(0.0, np.cumsum(size))))
+            begin = n
+    return found
 
 
 @dataclass(frozen=True)
