@@ -38,8 +38,8 @@ def load_without(load, module):
 
 def amend_numpy(numpy):
     """Let genpy, if it was loaded before, take NumPy's numbers for a message's floats."""
-    message = sys.modules.get("genpy.message")
-    if message is not None and numpy.float64 not in message._valid_float_types:
-        message._valid_float_types += [
+    floats = getattr(sys.modules.get("genpy.message"), "_valid_float_types", None)
+    if floats is not None and numpy.float64 not in floats:
+        floats += [
             numpy.float32, numpy.float64, numpy.int8, numpy.int16, numpy.int32, numpy.int64,
             numpy.uint8, numpy.uint16, numpy.uint32, numpy.uint64]
