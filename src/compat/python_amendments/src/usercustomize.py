@@ -33,7 +33,8 @@ AMENDMENTS = {
     "tkinter": ["no_screen.amend_tkinter"],
     "yaml": ["old_names.amend_yaml"],
 }
-QUICK = {"catkin.find_in_workspaces", "genpy.message"}  # loaded by quick_start.load_without
+# Loaded by quick_start.load_without.
+QUICK = {"catkin.find_in_workspaces", "catkin_pkg.condition", "genpy.message"}
 
 
 class Watch:

@@ -120,6 +120,18 @@ print(numpy.float32 in rospy.msg.genpy.message._valid_float_types)""").splitline
     assert package.count("/src/compat/python_amendments'") == 1
 
 
+def test_packages_are_read_without_pyparsing_unless_one_has_a_condition():
+    assert printed("""
+import sys
+from catkin_pkg.package import Dependency
+from catkin.find_in_workspaces import find_in_workspaces
+find_in_workspaces(['share'], 'python_amendments')
+print('pyparsing' in sys.modules)
+for condition in (None, '$A == 1', '$A == 2'):
+    print(Dependency('b', condition=condition).evaluate_condition({'A': '1'}))""").split() == [
+        "False", "True", "True", "False"]
+
+
 def test_numpy_that_is_there_already_is_found_at_once():
     assert printed("import numpy, genpy.message as message; "
                    "print(message._valid_float_types.count(numpy.float64))") == "1\n"

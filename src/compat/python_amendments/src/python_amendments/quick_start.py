@@ -1,7 +1,7 @@
-"""ROS's modules load without NumPy and catkin_pkg, which are half of a program's start.
+"""ROS's modules load without NumPy, catkin_pkg and pyparsing: half of a program's start.
 
 genpy asks for NumPy only to know the names of its numbers, catkin for catkin_pkg only to look
-through source folders.
+through source folders, and that for pyparsing only where a package.xml has conditions.
 """
 
 import sys
@@ -14,10 +14,27 @@ def _find_packages(*words, **more):
     return find_packages(*words, **more)
 
 
+class _Pyparsing:
+    @staticmethod
+    def infixNotation(*words):
+        from pyparsing import infixNotation
+
+        return infixNotation(*words)
+
+    def __getattr__(self, name):
+        if name.startswith("__"):  # which an import asks for
+            raise AttributeError(name)
+        import pyparsing
+
+        return getattr(pyparsing, name)
+
+
 # A module, and what it finds in the place of one that it seldom needs; None is an ImportError.
-IN_PLACE = {"catkin.find_in_workspaces": (
-    "catkin_pkg.packages", SimpleNamespace(find_packages=_find_packages)),
-            "genpy.message": ("numpy", None)}
+IN_PLACE = {
+    "catkin.find_in_workspaces": (
+        "catkin_pkg.packages", SimpleNamespace(find_packages=_find_packages)),
+    "catkin_pkg.condition": ("pyparsing", _Pyparsing()),
+    "genpy.message": ("numpy", None)}
 
 
 def load_without(load, module):
@@ -26,9 +43,9 @@ def load_without(load, module):
     if seldom in sys.modules:
         load(module)
         return
-    import genmsg  # noqa: F401  genpy.message loads in a moment then: another thread finds NumPy
-    import yaml  # noqa: F401
-
+    if seldom == "numpy":  # genpy.message loads in a moment then: another thread finds NumPy
+        import genmsg  # noqa: F401
+        import yaml  # noqa: F401
     sys.modules[seldom] = in_place
     try:
         load(module)
