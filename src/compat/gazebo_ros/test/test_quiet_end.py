@@ -4,7 +4,7 @@ import threading
 import time
 
 import pytest
-from gazebo_ros.quiet_end import end_quietly
+from gazebo_ros.spawning import end_quietly
 from rosgraph import xmlrpc
 
 LIMIT = 60.0  # s

@@ -12,8 +12,8 @@ import pytest
 
 from map_server import map_files
 from map_server.errors import MapFileError, MapImageError, MapMetadataError, MapMissingError
-from map_server.files import read_file
 from map_server.map_files import read_map, write_map
+from map_server.metadata import read_file
 from nav_algorithms.cells import OccupancyGrid
 
 GOOD = {"image": "map.pgm", "resolution": "0.05", "origin": "[-1.0, -2.0, 0.0]", "negate": "0",

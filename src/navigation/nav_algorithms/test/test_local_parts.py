@@ -7,7 +7,7 @@ from local_plans import ORIGIN, STILL, WAFFLE, straight, window_around
 from nav_algorithms.costmap.costs import LETHAL, UNKNOWN
 from nav_algorithms.local_planning.following import Following, within
 from nav_algorithms.local_planning.goal import Arrival, StopAndTurn
-from nav_algorithms.local_planning.oscillation import Oscillation
+from nav_algorithms.local_planning.local_planner import Oscillation
 from nav_algorithms.local_planning.pure_pursuit import cut
 from nav_algorithms.local_planning.velocities import samples, slowed, turning, window
 

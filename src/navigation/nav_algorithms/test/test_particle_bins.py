@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 
-from nav_algorithms.estimates import estimate, have_converged
-from nav_algorithms.particle_bins import bins_of, clusters_of, particles_needed
+from nav_algorithms.estimates import (
+    bins_of,
+    clusters_of,
+    estimate,
+    have_converged,
+    particles_needed,
+)
 
 
 def test_bins_are_half_a_metre_and_ten_degrees():

@@ -10,7 +10,7 @@ from nav_algorithms.local_planning import rollout
 from nav_algorithms.local_planning.dwa import DwaPlanner, DwaSettings
 from nav_algorithms.local_planning.following import Following
 from nav_algorithms.local_planning.free_arcs import arc_of, free_arc, space
-from nav_algorithms.local_planning.grids import distances_to
+from nav_algorithms.local_planning.local_planner import distances_to
 from nav_algorithms.local_planning.trajectory_rollout import (
     NO_GROWTH,
     TrajectoryRolloutSettings,

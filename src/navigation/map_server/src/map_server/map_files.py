@@ -16,8 +16,7 @@ import cv2
 import numpy as np
 
 from map_server.errors import MapFileError, MapImageError
-from map_server.files import read_file, unexpanded
-from map_server.metadata import MapMetadata, read_metadata
+from map_server.metadata import MapMetadata, read_file, read_metadata, unexpanded
 from nav_algorithms.cells import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 
 LARGEST = 1 << 27  # pixels: 579 m to a side at 5 cm

@@ -1,11 +1,16 @@
-"""The YAML file of a map, checked key by key."""
+"""The YAML file of a map, checked key by key.
+
+A file that the user names may be a pipe, a device or endless, or its name unexpanded (~).
+"""
 
 from __future__ import annotations
 
+import errno
 import math
 import os
 import re
 import reprlib
+import stat
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,7 +19,6 @@ import yaml
 from node_basics.bounded_yaml import BoundedLoader
 
 from map_server.errors import MapMetadataError, MapMissingError
-from map_server.files import read_file, unexpanded
 
 MODES = ("trinary", "scale", "raw")
 LARGEST = 1 << 20  # bytes; a description has a few hundred
@@ -31,6 +35,41 @@ EXAMPLES = {
     "free_thresh": "free_thresh: 0.196",
     "mode": "mode: trinary",
 }
+
+
+def read_file(path: Path, largest: int) -> bytes:
+    """Its content, but at most `largest` + 1 bytes, which means that it is too large.
+
+    Raises OSError, whose strerror says why, also for anything but a regular file: opening a pipe
+    could block for ever.
+    """
+    try:
+        found = path.stat()
+    except ValueError:
+        raise OSError(errno.EINVAL, "its name has a zero byte in it") from None
+    kind = found.st_mode
+    if not (stat.S_ISREG(kind) or stat.S_ISDIR(kind)):  # for a folder, open() raises the error
+        raise OSError(errno.EINVAL, "it is a pipe or device, not a file")
+    with path.open("rb") as file:
+        return file.read(min(found.st_size, largest) + 1)  # allocated at once
+
+
+def unexpanded(name: str) -> str:
+    """What to write for a name that a shell or roslaunch would have expanded; "" if it is plain.
+
+    Quotes keep a shell from it; in a launch file's `args` there is no shell.
+    """
+    first, _, rest = name.partition("/")
+    if first == "~":
+        return f"~ is not expanded here: write {Path.home() / rest}"
+    if found := re.match(r"\$\(find ([\w-]+)\)(.*)", name):
+        return (f"$(find {found[1]}) is expanded in launch files only: write "
+                f'"$(rospack find {found[1]}){found[2]}"')
+    if first.startswith("$"):
+        value = os.environ.get(first.strip("${}"))
+        folder = str(Path(value) / rest) if value else "the path itself"
+        return f"{first} is not expanded here: write {folder}"
+    return ""
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,7 @@ import numpy as np
 
 from nav_algorithms import motion_models, poses
 from nav_algorithms.cells import FREE, OccupancyGrid
-from nav_algorithms.estimates import Estimate, estimate, have_converged
-from nav_algorithms.particle_bins import bins_of, particles_needed
+from nav_algorithms.estimates import Estimate, bins_of, estimate, have_converged, particles_needed
 from nav_algorithms.sensor_models import LaserModel, Scan, SensorSettings
 
 TRIED = 60_000    # poses that a scan is compared with: in a house one every 10 degrees and 0.1 m^2

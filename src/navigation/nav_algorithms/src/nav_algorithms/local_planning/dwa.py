@@ -15,9 +15,7 @@ from nav_algorithms.costmap.costs import Costmap
 from nav_algorithms.costmap.footprint import Ground
 from nav_algorithms.local_planning import rollout
 from nav_algorithms.local_planning.goal import Arrival
-from nav_algorithms.local_planning.grids import distances_to
-from nav_algorithms.local_planning.local_planner import LocalPlanner
-from nav_algorithms.local_planning.oscillation import Oscillation
+from nav_algorithms.local_planning.local_planner import LocalPlanner, Oscillation, distances_to
 from nav_algorithms.local_planning.velocities import (
     Command,
     Limits,

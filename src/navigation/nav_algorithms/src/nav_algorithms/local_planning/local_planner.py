@@ -1,4 +1,8 @@
-"""The common part of the local planners: a path, its end, and a footprint that fits."""
+"""The common part of the local planners: a path, its end, and a footprint that fits.
+
+Also what some of them share: no oscillation (after a reversal, the direction may not be reversed
+again on the spot), and the distance of each cell of a local costmap from the path or a target.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +11,95 @@ from abc import ABC, abstractmethod
 import numpy as np
 
 from nav_algorithms.costmap import footprint as footprints
-from nav_algorithms.costmap.costs import Costmap
+from nav_algorithms.costmap.costs import INSCRIBED, LETHAL, UNKNOWN, Costmap
+from nav_algorithms.global_planning.potential import spread_everywhere
 from nav_algorithms.local_planning.following import STANDSTILL, Following, within
 from nav_algorithms.local_planning.goal import Arrival, StopAndTurn
-from nav_algorithms.local_planning.oscillation import Oscillation
 from nav_algorithms.local_planning.velocities import Command, Limits
+from nav_algorithms.poses import wrap_angle
+
+TIGHT = 20.0  # cost, in free cells, of a cell where the robot's centre should not be
+GROWTH, LARGEST = 2.0, 3.0  # of the angle, rad; differences are at most half a turn
+
+
+def distances_to(costmap: Costmap, points: np.ndarray, passable: np.ndarray) -> np.ndarray:
+    """Way from each cell to the nearest of the points (N, 2), in cells (rows, columns); inf: none.
+
+    The way leads around obstacles; cells of `passable` (M, 2) are free whatever is in them, as in
+    base_local_planner's map grid, where the path is trusted more than the costmap.
+    """
+    crossing = np.ones(costmap.cells.shape)
+    crossing[costmap.cells >= INSCRIBED] = TIGHT
+    crossing[(costmap.cells == LETHAL) | (costmap.cells == UNKNOWN)] = np.inf
+    cells = costmap.cells_of(passable)
+    crossing[tuple(cells[costmap.contains(cells)].T)] = 1.0
+    sources, seeds = _around(costmap, points)
+    passable = np.isfinite(crossing[tuple(sources.T)])
+    return spread_everywhere(crossing, np.ascontiguousarray(sources[passable]), seeds[passable])
+
+
+def _around(costmap: Costmap, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cells (S, 2) of the points and next to them, and their distance from the point, in cells."""
+    beside = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1], indexing="ij"), axis=-1).reshape(-1, 2)
+    cells = (costmap.cells_of(points).reshape(-1, 1, 2) + beside)
+    away = (costmap.centres_of(cells) - np.asarray(points).reshape(-1, 1, 2)) / costmap.resolution
+    inside = costmap.contains(cells)
+    return cells[inside], np.hypot(away[..., 0], away[..., 1])[inside]
+
+
+class Oscillation:
+    """Per axis, the sign of the last motion, and the only sign allowed until the robot has moved.
+
+    As dwa_local_planner's flags: forward and backward always count, strafing and turning only
+    if the robot does not drive. Unlike there, the angle that counts as a move grows each time the
+    robot has only turned: it looks farther round instead of oscillating for ever.
+    """
+
+    def __init__(self, reset_distance: float, reset_angle: float) -> None:
+        """The robot has moved after `reset_distance`, m, or `reset_angle`, rad."""
+        self.reset_distance, self.reset_angle = reset_distance, reset_angle
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget everything."""
+        self._begin_anew()
+        self.angle = self.reset_angle
+        self.spot = np.zeros(2)  # where the robot has only turned
+
+    def _begin_anew(self) -> None:
+        self.last = np.zeros(3)
+        self.only = np.zeros(3)
+        self.where = np.zeros(3)
+
+    def allowed(self, samples: np.ndarray) -> np.ndarray:
+        """Which of the samples (S, 3) are allowed, bool (S,)."""
+        return (samples * self.only >= 0.0).all(axis=1)
+
+    def took(self, velocity: np.ndarray, pose: np.ndarray, min_vel_trans: float) -> None:
+        """Remember the command at `pose`."""
+        turned = False
+        for axis in range(3):
+            if axis and abs(velocity[0]) > min_vel_trans:
+                continue
+            sign = np.sign(velocity[axis])
+            if sign and self.last[axis] == -sign:
+                self.only[axis], turned = sign, True
+            if sign:
+                self.last[axis] = sign
+        if turned:
+            self.where = np.array(pose, float)
+
+    def at(self, pose: np.ndarray) -> None:
+        """Take the robot's pose: far enough from where it reversed, everything is allowed."""
+        if np.hypot(*(pose[:2] - self.spot)) > self.reset_distance:
+            self.angle, self.spot = self.reset_angle, pose[:2].copy()
+        if not self.only.any():
+            return
+        if np.hypot(*(pose[:2] - self.where[:2])) > self.reset_distance:
+            self._begin_anew()
+        elif abs(wrap_angle(pose[2] - self.where[2])) > self.angle:
+            self._begin_anew()
+            self.angle = min(GROWTH * self.angle, LARGEST)
 
 
 class LocalPlanner(ABC):
