@@ -142,6 +142,22 @@ def test_what_fails_is_said_and_the_next_call_goes_on(tmp_path, program, text, s
     assert machine.run("course.sh").returncode == 0
 
 
+@pytest.mark.parametrize(("inside", "line", "written"), [
+    (True, "make -sC {} shell", "alias courses='make -sC {} shell'  # ros1-driving-courses"),
+    (False, "source {}/devel/setup.bash", "source {}/devel/setup.bash  # ros1-driving-courses")])
+def test_a_terminal_of_the_machine_enters_by_a_word(tmp_path, inside, line, written):
+    (tmp_path / ("inside" if inside else "outside")).touch()
+    text = (ROOT / "scripts/setup/workspace.sh").read_text("utf-8")
+    (tmp_path / "workspace.sh").write_text(
+        text.replace("/etc/ros1-driving-courses", f"{tmp_path}/inside"))
+    done = subprocess.run(
+        ["bash", "-c", ". scripts/common.sh; . $1; terminal_line; source_in_bashrc", "bash",
+         tmp_path / "workspace.sh"], cwd=ROOT, env={**os.environ, "HOME": str(tmp_path)},
+        text=True, capture_output=True, check=True)
+    assert done.stdout.splitlines()[0] == line.format(ROOT)
+    assert (tmp_path / ".bashrc").read_text() == f"{written.format(ROOT)}\n"
+
+
 def test_it_is_removed_by_one_command(tmp_path):
     machine = Machine(tmp_path, UBUNTU)
     machine.forget_what_root_does()

@@ -64,11 +64,16 @@ packages_in() { head -1 "$1"; awk '/package.xml$/ {print $2}' "$1"; }
 # What makes each new terminal one of this workspace; of several clones the last one that asked for it.
 bashrc_mark="# ros1-driving-courses"
 # In a Debian of its own (debian_root.sh) ROS is not there for the machine's terminals: a word enters one in there.
-terminal_line() { [ -e /etc/ros1-driving-courses ] && echo "alias courses='make -sC $root shell'" || echo "source $root/devel/setup.bash"; }
-bashrc_line() { printf '%s' "$(terminal_line)  $bashrc_mark"; }
+terminal_line() { [ -e /etc/ros1-driving-courses ] && echo "make -sC $root shell" || echo "source $root/devel/setup.bash"; }
+bashrc_line() {
+  local line
+  line=$(terminal_line)
+  [[ $line != make* ]] || line="alias courses='$line'"
+  printf '%s' "$line  $bashrc_mark"
+}
 source_in_bashrc() {
   local file=${HOME:-}/.bashrc line
-  line=$(terminal_line)
+  line=$(bashrc_line) line=${line%  "$bashrc_mark"}
   if grep -qsxF "$(bashrc_line)" "$file"; then say $"$file has this line already: $line"; return; fi
   if [ -e "$file" ] && { [ ! -w "$file" ] || ! sed -i --follow-symlinks "/$bashrc_mark\$/d" "$file" 2>/dev/null; }; then
     fail $"$file cannot be written: type in each new terminal: $line"
