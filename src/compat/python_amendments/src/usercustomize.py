@@ -1,8 +1,8 @@
 """Python runs this file at its start: it amends a few modules when a script imports them.
 
 cv2 gets its windows, cv_bridge a faster swap of colours, Tk a line for want of a screen, some
-modules get the names that they had when a script was written, and rospy says what a node waits for;
-it loads without what a node seldom needs.
+modules get the names that they had when a script was written, and rospy says what a node waits for,
+ends at Ctrl-C wherever that comes, and loads without what a node seldom needs.
 A roslaunch that a program of ours refuses ends with one line; each begins without setuptools.
 Programs of ours print in the language of the locale, and end without a traceback at Ctrl-C, or when
 the reader of their output has ended.
@@ -27,6 +27,9 @@ AMENDMENTS = {
     "roslaunch.loader": ["launch_end.amend_loader"],
     "roslaunch.pmon": ["launch_end.amend_signals"],
     "rospy.client": ["waiting.amend_client"],
+    "rospy.core": ["node_end.amend_core"],
+    "rospy.impl.registration": ["node_end.amend_registration"],
+    "rospy.impl.tcpros_pubsub": ["node_end.amend_publishing"],
     "rospy.impl.tcpros_service": ["waiting.amend_services"],
     "rospy.topics": ["waiting.amend_topics"],
     "tf2_ros.buffer": ["waiting.amend_frames"],
