@@ -1,13 +1,19 @@
 #!/usr/bin/env bash
 # Writes out/report.txt, which a bug report wants: our version, this machine, how far setup came, what went wrong last.
 #
-# Of a setting it has one of some known values, and of a log the kinds of errors and the places in our packages and in
-# Debian's, as all else may name people, machines or passwords. What `make mark` wrote is not read.
+# Of a setting it has one of some known values, and of a log the errors of Python, ROS and ours, and the places in our
+# files and in Debian's, as all else may name people, machines or passwords. What `make mark` wrote is not read.
 on_any_linux=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 state=$root/.setup venv=$root/.venv tests=no
 lines=20  # of each verb's errors, the last
 ours=$(sed -n '/^OUR_FOLDERS/,/)/p' "$root/scripts/own_packages.py" | grep -o '"[a-z_]*"' | tr -d '"' | paste -sd '|')
+
+learners=learning_topic,exercises,lessons  # where learners add files of their own
+python=$(python3 -c 'import builtins as b; print(*(n for n in dir(b) if n.endswith(("Error", "Exception"))), sep="|")' || echo Exception)
+modules='rospy|ros\w*|genpy|genmsg|actionlib|tf2?|tf2_ros|xacro|catkin\w*|cv_bridge|numpy|yaml|xml|json|subprocess|xmlrpc|http'
+modules+="|bullet_sim\w*|sim_viewer|evaluation|marking|run_session|workspace_needs|node_basics|nav_algorithms"
+libraries='cv2|numpy|numba|llvmlite|pybullet\w*|moderngl|onnxruntime|scipy|psutil|yaml'
 
 # One of these values, or that it is another one.
 known() {
@@ -42,15 +48,20 @@ errors() {
   local heading=$1 logs=() found
   mapfile -td '' logs < <(find -H "${@:2}" -name '*.log' -size +0 -printf '%T@ %p\0' 2>/dev/null | sort -zn | cut -zd ' ' -f 2-)
   [ ${#logs[@]} -gt 0 ] || return 0
-  found=$(ROOT=$root OURS=$ours perl -ne '
+  found=$(ROOT=$root OURS=$ours PYTHON=$python MODULES=$modules LIBRARIES=$libraries LEARNERS=${learners//,/|} \
+    TRACKED=$(git -C "$root" ls-files src 2>/dev/null) perl -ne '
+    BEGIN { %tracked = map { $_ => 1 } split /\n/, $ENV{TRACKED} }
     while (m{(?:\Q$ENV{ROOT}\E/(?=(?:src/(?:$ENV{OURS})|scripts|test|\.venv)/)|(?<![\w./-])(?=/usr/lib/python3[\d.]*/))
              ((?:(?!\.\./)[\w./+-])+)(?:",\ line\ |:)(\d+)
-            |^(?:\w+\.)*(\w+(?:Error|Exception))(?::|$)
+            |^(?:(?:$ENV{MODULES})\.(?:\w+\.)*(\w+(?:Error|Exception))|($ENV{PYTHON}))(?::|$)
             |(process\ has\ died|exit\ code\ -?\d+|CMake\ Error|[Nn]o\ space\ left|Permission\ denied|Segmentation\ fault
              |Unable\ to\ locate\ package|unmet\ dependencies|No\ matching\ distribution|DO\ NOT\ MATCH\ THE\ HASHES
              |Temporary\ failure|Could\ not\ (?:resolve|connect|get\ lock)|Connection\ refused|Network\ is\ unreachable)}gx) {
-      my ($place, $line, $known) = ($1, $2, $3 // $4);
-      $place =~ s{^src/.*/scripts/\K.*}{} if $place;  # a learner may put programs of his own there
+      my ($place, $line, $known) = ($1, $2, $3 // $4 // $5);
+      # a learner may put files of his own there
+      $place =~ s{^src/\w+/\K.*}{} if $place and !$tracked{$place} and
+        (%tracked or $place =~ m{^src/(?:(?:$ENV{LEARNERS})/|.*/scripts/)});
+      $place =~ s{/site-packages/\K(?!(?:$ENV{LIBRARIES})/).*}{} if $place;
       print "  ", $known // "$place:$line", "\n";
     }' "${logs[@]}" | uniq | tail -n "$lines")
   say "log: $heading, $(date -r "${logs[-1]}" '+%F %R'):${found:+$'\n'}${found:- no known error}"
@@ -74,6 +85,7 @@ report() (
   for verb in viewer drive; do errors "make $verb" "$root/out/$verb.log"; done
   errors roslaunch "${HOME:-/nonexistent}/.ros/log/latest" "$state/ros/log/latest"
 )
-mkdir -p "$root/out"
-report >"$root/out/report.txt"
+text=$(report)
+reason=$({ mkdir -p "$root/out" && printf '%s\n' "$text" >"$root/out/report.txt"; } 2>&1) ||
+  fail $"out/report.txt cannot be written: ${reason##*: }. Free some disk space, or make out/ a folder of yours"
 say $"out/report.txt is written. Read it, then attach it to your report."

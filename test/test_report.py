@@ -29,22 +29,32 @@ PLACES = """Traceback (most recent call last):
   File "/usr/lib/python3/../../home/zhang.py", line 3, in <module>
   File "/srv/usr/lib/python3/zhang.py", line 3, in <module>
   File "/usr/lib/python3zhang/x.py", line 3, in <module>
+  File "{root}/src/exercises/zhang/zhang.py", line 6, in <module>
+  File "{root}/.venv/lib/python3.11/site-packages/zhang/x.py", line 8, in <module>
+  File "{root}/.venv/lib/python3.11/site-packages/numpy/core.py", line 9, in <module>
   File "{root}/src/sim/bullet_sim/a.py", line 12, in <module>
   File "/usr/lib/python3/dist-packages/rospy/client.py", line 7, in zhang
   File "{root}/src/zhang_bot/talker.py", line 3, in <module>
 rospy.exceptions.ROSException: of zhang at 192.168.7.9
 [zhang_bot-2] process has died [pid 7, exit code -11, cmd {root}/src/zhang_bot/talker.py].
 E: Unable to locate package zhang
+ZhangError: no
+zhang_bot.talker.ZhangException: no
+bullet_sim.errors.SimulationError: of zhang
 AssertionError
 """
 TOLD = """
-  src/learning_topic/scripts/:5
+  src/learning_topic/:5
+  src/exercises/:6
+  .venv/lib/python3.11/site-packages/:8
+  .venv/lib/python3.11/site-packages/numpy/core.py:9
   src/sim/bullet_sim/a.py:12
   /usr/lib/python3/dist-packages/rospy/client.py:7
   ROSException
   process has died
   exit code -11
   Unable to locate package
+  SimulationError
   AssertionError
 """
 
@@ -124,6 +134,31 @@ def test_a_log_that_cannot_be_read_hides_no_other(checkout: Path) -> None:
     said, shown = report(checkout)
     assert "Can't open" in shown and "course/b.log" in shown
     assert "  ValueError\n" in said and said.endswith("  KeyError\n")
+
+
+@pytest.mark.parametrize(("spoil", "reason"), [
+    (lambda out: out.write_text(""), "File exists"),
+    (lambda out: (out / "report.txt").mkdir(parents=True), "Is a directory"),
+    (lambda out: (out.mkdir(), (out / "report.txt").symlink_to("/dev/full")),
+     "No space left on device")])
+def test_a_report_that_cannot_be_written_ends_with_one_line(checkout: Path, spoil, reason) -> None:
+    spoil(checkout / "out")
+    done = subprocess.run([checkout / "scripts/report.sh"], capture_output=True, text=True,
+                          check=False, env={"PATH": os.environ["PATH"]})
+    assert done.returncode == 1 and not done.stdout
+    assert done.stderr == (f"report: out/report.txt cannot be written: {reason}. Free some disk "
+                           "space, or make out/ a folder of yours\n")
+
+
+def test_in_a_clone_only_files_in_git_are_named(checkout: Path) -> None:
+    write_log(checkout / "src/lessons/ours.py", "")
+    for command in ("init -q", "add src"):
+        subprocess.run(["git", "-C", checkout, *command.split()], check=True)
+    write_log(checkout / "out/course/a.log", "".join(
+        f'  File "{checkout}/src/{name}.py", line 3, in <module>\n'
+        for name in ("lessons/ours", "lessons/zhang", "sim/zhang/zhang")))
+    said, _ = report(checkout)
+    assert said.endswith("  src/lessons/ours.py:3\n  src/lessons/:3\n  src/sim/:3\n")
 
 
 def test_a_report_has_the_versions_and_how_far_setup_came(checkout: Path) -> None:
