@@ -62,14 +62,19 @@ def test_who_answers_at_the_address(node, expected):
         assert sign(uri) is expected
 
 
-@pytest.mark.parametrize(("has_terminal", "its_pid", "lacks"), [
-    (None, os.getpid, True), (os.getpid, os.getpid, False),
-    (os.getppid, os.getpid, False),  # a verb, which starts its programs in sessions of their own
-    (None, os.getppid, False)])  # it has no such port: a number of another machine
-def test_a_node_without_a_terminal(monkeypatch, has_terminal, its_pid, lacks):
+@pytest.mark.parametrize(("has_terminal", "its_pid", "parent", "lacks"), [
+    (None, os.getpid, 7, True), (os.getpid, os.getpid, 7, False),
+    (os.getppid, os.getpid, 7, False),  # a verb, which starts its programs in sessions of their own
+    (os.getpid, os.getpid, 1, False),
+    (os.getppid, os.getpid, 1, True),  # the shell of `docker run -it` has inherited it
+    (None, os.getppid, 7, False)])  # it has no such port: a number of another machine
+def test_a_node_without_a_terminal(monkeypatch, has_terminal, its_pid, parent, lacks):
     pid, with_terminal = its_pid(), has_terminal() if has_terminal else None
     monkeypatch.setattr(psutil.Process, "terminal",
                         lambda self: "/dev/pts/3" if self.pid == with_terminal else None)
+    monkeypatch.setattr(psutil.Process, "parents", lambda self: [psutil.Process(os.getppid())])
+    monkeypatch.setattr(psutil.Process, "ppid", lambda self: parent)
+    monkeypatch.setattr(os, "getsid", lambda pid: pid)
     with (serving(xmlrpc_server(getPid=lambda _: [1, "", pid])) as node,
           serving(xmlrpc_server(lookupNode=lambda _caller, _node: [1, "", node])) as master):
         assert lacks_terminal(master, NAME) is lacks

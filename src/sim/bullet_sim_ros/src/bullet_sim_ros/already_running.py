@@ -8,6 +8,7 @@ import contextlib
 import errno
 import hashlib
 import http.client
+import os
 import socket
 import sys
 import threading
@@ -95,7 +96,9 @@ def lacks_terminal(master_uri: str, name: str) -> bool:
         process = psutil.Process(node.getPid(name)[2])
         if urlsplit(uri).port not in {one.laddr.port for one in process.net_connections("tcp")}:
             return False  # a number of another machine, or of a container
-        return not any(each.terminal() for each in (process, *process.parents()))
+        orphaned = psutil.Process(os.getsid(process.pid)).ppid() == 1  # whose terminal is another's
+        parents = () if orphaned else process.parents()
+        return not any(each.terminal() for each in (process, *parents))
     return False
 
 
