@@ -76,6 +76,14 @@ def test_a_second_signal_does_not_disturb_the_cleanup(start, number):
     assert process.returncode == 0
 
 
+def test_two_signals_at_once_are_no_traceback(start):
+    process = start(INTERRUPTED)
+    process.send_signal(signal.SIGSTOP)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGCONT):  # as a shell passes Ctrl-C on
+        process.send_signal(number)
+    assert process.communicate("\n", LIMIT) == ("cleanup\nclean\n", "")
+
+
 @SIGNALS
 @pytest.mark.parametrize("limit", ["60", "1"])
 def test_a_program_that_does_not_end_when_asked_is_ended(start, number, limit):

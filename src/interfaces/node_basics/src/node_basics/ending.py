@@ -28,8 +28,8 @@ def interruptible() -> Iterator[None]:
     """
 
     def interrupt(_number: int, _frame: object) -> None:
-        for number in SIGNALS:
-            signal.signal(number, signal.SIG_IGN)
+        for number in SIGNALS:  # not SIG_IGN: Python writes a traceback if one has just come
+            signal.signal(number, lambda *_: None)
         raise KeyboardInterrupt
 
     for number in SIGNALS:
