@@ -9,7 +9,7 @@ state=$root/.setup venv=$root/.venv tests=no
 lines=20  # of each verb's errors, the last
 ours=$(sed -n '/^OUR_FOLDERS/,/)/p' "$root/scripts/own_packages.py" | grep -o '"[a-z_]*"' | tr -d '"' | paste -sd '|')
 
-learners=learning_topic,exercises,lessons  # where learners add files of their own
+learners="learning_topic|exercises|lessons"  # where learners add files of their own
 python=$(python3 -c 'import builtins as b; print(*(n for n in dir(b) if n.endswith(("Error", "Exception"))), sep="|")' || echo Exception)
 modules='rospy|ros\w*|genpy|genmsg|actionlib|tf2?|tf2_ros|xacro|catkin\w*|cv_bridge|numpy|yaml|xml|json|subprocess|xmlrpc|http'
 modules+="|bullet_sim\w*|sim_viewer|evaluation|marking|run_session|workspace_needs|node_basics|nav_algorithms"
@@ -48,7 +48,7 @@ errors() {
   local heading=$1 logs=() found
   mapfile -td '' logs < <(find -H "${@:2}" -name '*.log' -size +0 -printf '%T@ %p\0' 2>/dev/null | sort -zn | cut -zd ' ' -f 2-)
   [ ${#logs[@]} -gt 0 ] || return 0
-  found=$(ROOT=$root OURS=$ours PYTHON=$python MODULES=$modules LIBRARIES=$libraries LEARNERS=${learners//,/|} \
+  found=$(ROOT=$root OURS=$ours PYTHON=$python MODULES=$modules LIBRARIES=$libraries LEARNERS=$learners \
     TRACKED=$(git -C "$root" ls-files src 2>/dev/null) perl -ne '
     BEGIN { %tracked = map { $_ => 1 } split /\n/, $ENV{TRACKED} }
     while (m{(?:\Q$ENV{ROOT}\E/(?=(?:src/(?:$ENV{OURS})|scripts|test|\.venv)/)|(?<![\w./-])(?=/usr/lib/python3[\d.]*/))

@@ -4,6 +4,7 @@ import itertools
 import logging
 import math
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,10 +19,11 @@ from bullet_sim.description import (
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats.loading import load_model
 from bullet_sim.formats.resources import Resources
+from bullet_sim.physics.client import FREE_GROUPS
 from bullet_sim.physics.collision_filters import CollisionFilters
 from bullet_sim.physics.engine import STDERR, STDOUT, EngineError, pybullet, quiet
 from bullet_sim.physics.parameter_bounds import KEPT, MOST_POSITIONS
-from bullet_sim.pose import Pose, quaternion_from_rpy, rotation_matrix
+from bullet_sim.pose import IDENTITY, Pose, quaternion_from_rpy, rotation_matrix
 from bullet_sim.world import World
 
 BOX = "<collision name='c'><geometry><box><size>0.1 0.1 0.1</size></box></geometry></collision>"
@@ -106,26 +108,74 @@ def test_what_a_failed_spawn_made_is_removed(world, monkeypatch, fails):
 
 
 def test_pairs_that_a_failed_spawn_gave_the_engine_are_removed(world, monkeypatch):
-    told, tell, asked = [], world._client.change, []
+    told, tell = [], world._client.change
 
-    def note(function, *args, **keywords):
+    def refuse_the_second(function, *args, **keywords):
         if function is pybullet.setCollisionFilterPair:
+            if len(told) == 1 and not args[4]:
+                raise EngineError("no")
             told.append((args[:4], args[4]))
         return tell(function, *args, **keywords)
 
-    def refuse_the_second(*_args):
-        asked.append(_args)
-        if len(asked) > 1:
-            raise EngineError("no")
-        return True
-
-    monkeypatch.setattr(world._client, "change", note)
-    monkeypatch.setattr(CollisionFilters, "_needs_filter", refuse_the_second)
+    monkeypatch.setattr(world._client, "change", refuse_the_second)
     links = "".join(f'<link name="{name}">{BOX}</link>' for name in "abc")
     with pytest.raises(EngineError):
         world.spawn(read(f'<model name="m">{links}</model>'))
     assert told == [(told[0][0], 0), (told[0][0], 1)]
     assert_empty(world)
+
+
+def loose(count: int, around: str = ""):
+    """A model of links in one place that no joint connects."""
+    links = "".join(f'<link name="l{number}">{BOX}</link>' for number in range(count))
+    return read(f'<model name="m">{around}{links}</model>')
+
+
+def test_many_links_without_joints_are_filtered_as_a_group(world, monkeypatch):
+    change, pairs = world._client.change, []
+    monkeypatch.setattr(world._client, "change", lambda function, *args, **keywords: (
+        pairs.append(1) if function is pybullet.setCollisionFilterPair
+        else change(function, *args, **keywords)))
+    world.spawn(read(PLANE), name="ground")
+    for number in range(len(FREE_GROUPS)):
+        world.spawn(loose(80), Pose((number, 0.0, 0.0)), name=f"m{number}")
+    world.step()
+    touching = {name.split("::")[0] for contact in world.contacts() for name in contact.links}
+    assert touching == {"ground", *(f"m{number}" for number in range(len(FREE_GROUPS)))}
+    assert all("ground::l" in contact.links for contact in world.contacts())
+    with pytest.raises(SimulationError, match="model m has 80 links that collide with others but "
+                                              "not with one another, which takes long; make"):
+        world.spawn(loose(80))
+    world.delete("m0")
+    world.spawn(loose(80))
+    assert not pairs
+
+
+def test_links_of_one_static_model_do_not_touch_one_another(world):
+    world.spawn(loose(200, "<static>1</static>"))
+    world.step()
+    assert not world.contacts()
+    world.spawn(loose(1), name="on_it")
+    world.step()
+    assert all("on_it::l0" in contact.links for contact in world.contacts())
+    assert world.contacts()
+
+
+def test_a_crowd_is_left_out_of_a_world_with_one_line(caplog):
+    models = [replace(loose(1), name=f"m{number}", pose=Pose((0.01 * (number % 2), 0.0, 1.0)))
+              for number in range(60)]
+    world = World(WorldDescription(name="w", models=tuple(models)))
+    assert len(world.models) == 50
+    assert [line.getMessage() for line in caplog.records] == [
+        "world w, model 'm50': too many shapes lie in one another at 0 0 1, so that a step would "
+        "take minutes; give each a <pose> of its own; it and 9 models after it are left out"]
+    for name in list(world.models):
+        world.delete(name)
+    assert world._client.crowding._overlaps == 0
+    for model in models:
+        world.spawn(replace(model, pose=IDENTITY), Pose((0.1 * int(model.name[1:]), 0.0, 1.0)))
+    assert len(world.models) == 60
+    world.close()
 
 
 def test_flat_plates_turn_however_they_lie():

@@ -55,6 +55,7 @@ class Model:
         loops = loop_joints(description, trees)
         LoopConstraints(client, description, self.bodies, loops)
         CollisionFilters(client, description, self.bodies)
+        client.crowding.put(description, self.bodies)
         owner = {link.described: body for body in self.bodies for link in body.tree.links}
         self.links = {
             link.name: Link(self, link, owner[link.name]) for link in description.links

@@ -19,6 +19,7 @@ from bullet_sim.nan_recovery import lost_models, recover_from_nan
 from bullet_sim.nested import carried_lights, find_link, light_name
 from bullet_sim.physics.client import PhysicsClient
 from bullet_sim.physics.contacts import Contact, read_contacts
+from bullet_sim.physics.crowding import Crowded
 from bullet_sim.physics.engine import EngineError
 from bullet_sim.physics.parameter_bounds import check_kept, check_physics, possible_physics
 from bullet_sim.physics.rays import RayHits, cast_rays
@@ -54,13 +55,23 @@ class World:
         self._client = PhysicsClient(self.description.physics, self.description.gravity)
         for light in self.description.lights:
             self.scene.add_light(light)
+        self._spawn_all()
+        for name, visual in self.description.scenery:
+            self.scene.add_link(("", name), (visual,), IDENTITY)
+
+    def _spawn_all(self) -> None:
+        """The models of the description; one line for each that cannot be, one for a crowd."""
+        crowd: list[str] = []
         for model in self.description.models:
             try:
                 self.spawn(model)
+            except Crowded as error:
+                crowd.append(f"{model.name!r}: {error}")
             except SimulationError as error:
                 _log.error("model %r: %s; left out", model.name, error)
-        for name, visual in self.description.scenery:
-            self.scene.add_link(("", name), (visual,), IDENTITY)
+        if crowd:
+            _log.error("world %s, model %s; it and %d models after it are left out",
+                       self.description.name, crowd[0], len(crowd) - 1)
 
     # --- time
 

@@ -1,8 +1,7 @@
 """Runs robots and worlds in a simulation without a master, to collect what the plugins log."""
 
 import logging
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -22,10 +21,6 @@ from bullet_sim_ros.simulation import Simulation
 from bullet_sim_ros.without_master import without_master
 from workspace_needs.check.findings import PROBLEM
 
-# Beyond these the engine's time or memory grows by the square, to seconds for a step.
-MOST_SOLID, MOST_EMPTY = 30, 1000  # movable parts at one place, with and without collisions
-MOST_LOOSE = 400  # links of a model that no joint connects
-PLACE = 0.1  # m
 STEPS = 10  # enough for problems that only show when time passes
 LOGGERS = ("bullet_sim", "rosout")
 NOT_CAPTURED = (unknown_plugins.name, defaults.name)  # the former are looked up in the text
@@ -72,31 +67,6 @@ def listening() -> Iterator[list[LogLine]]:
         for logger, before in zip(loggers, propagated, strict=True):
             logger.removeHandler(listener)
             logger.propagate = before
-
-
-def crowd(models: Iterable[ModelDescription]) -> str:
-    """Why models are too many in too little space to be tried; "" if they are not."""
-    solid: Counter[tuple[float, ...]] = Counter()
-    every: Counter[tuple[float, ...]] = Counter()
-    for model in models:
-        if model.static:
-            continue
-        places = [tuple(PLACE * round(part / PLACE) + 0.0
-                        for part in (model.pose * link.pose).position) for link in model.links]
-        every.update(places)
-        hard = [place for place, link in zip(places, model.links, strict=True) if link.collisions]
-        if hard and (loose := len(places) - len(model.joints)) > MOST_LOOSE:
-            return (f"{loose} links of model {model.name} are connected by no joint, so the "
-                    "simulation is not tried; make them models of their own")
-        collide = model.self_collide or any(link.self_collide for link in model.links)
-        solid.update(hard if collide else hard[:1])
-    for counts, most in ((solid, MOST_SOLID), (every, MOST_EMPTY)):
-        for place, number in counts.most_common(1):
-            if number > most:
-                at = " ".join(f"{part:g}" for part in place)
-                return (f"{number} movable parts are at one place, {at}, so the simulation is not "
-                        "tried: each step would take long; give each a <pose> of its own")
-    return ""
 
 
 def try_model(description: ModelDescription, parameters: Mapping[str, object],

@@ -19,8 +19,8 @@ from bullet_sim.formats.xml_values import child_text, parse_xml, read_xml_file
 from bullet_sim_ros.interface import ABSENT, ACCEPTED, APPROXIMATED, WORKS, Entry, Row
 from bullet_sim_ros.plugin_host.registry import NOT_NEEDED
 from bullet_sim_ros.plugin_host.unknown import MATTERS
-from workspace_needs.check.dry_run import LogLine, crowd, listening, try_model, try_world
-from workspace_needs.check.findings import UNCHECKED, Finding, problem, told
+from workspace_needs.check.dry_run import LogLine, listening, try_model, try_world
+from workspace_needs.check.findings import Finding, problem, told
 from workspace_needs.check.parameter_commands import expanded
 
 LIGHTS = ("point", "spot", "directional")
@@ -144,16 +144,14 @@ class TextChecker:
         with listening() as captured:
             try:
                 description = load_entity(text, self._resources)
-                if isinstance(description, ModelDescription) and not (
-                        crowded := crowd([description])):
+                if isinstance(description, ModelDescription):
                     try_model(description, parameters, namespace)
             except SimulationError as error:
                 return [problem(where, "robot", error)]
         if not isinstance(description, ModelDescription):
             return [Finding(where, "light", WORKS), *self._details(text, where, None)]
         links = f"{len(description.links)} links, {len(description.joints)} joints"
-        return [Finding(where, f"model {description.name} ({links})",
-                        UNCHECKED if crowded else WORKS, crowded),
+        return [Finding(where, f"model {description.name} ({links})", WORKS),
                 *_not_failed(self._details(text, where, None), captured), *_logged(captured, where)]
 
     def world_file(self, path: Path, parameters: Mapping[str, object] | None = None
@@ -164,14 +162,12 @@ class TextChecker:
             try:
                 text = decoded(read_bytes(path))
                 description = load_world(path, self._resources)
-                if not (crowded := crowd(description.models)):
-                    try_world(description, parameters or {})
+                try_world(description, parameters or {})
             except (SimulationError, OSError) as error:
                 return [problem(where, "world", error)]
         name = f"world {description.name} ({len(description.models)} models)"
         details = _not_failed(self._details(text, where, path.parent), captured)
-        return [Finding(where, name, UNCHECKED if crowded else WORKS, crowded),
-                *details, *_logged(captured, where)]
+        return [Finding(where, name, WORKS), *details, *_logged(captured, where)]
 
     def _details(self, text: str, where: str, folder: Path | None) -> list[Finding]:
         """Findings about plugins and elements of the text in `folder`, and of included files."""

@@ -220,6 +220,7 @@ class Body:
         if self.number == NOWHERE:
             return
         self.client.planes.remove(self.number)
+        self.client.crowding.remove(self.number, len(self.tree.links))
         self.client.settling.pop(self.wheels, None)
         for seen in [seen for seen in self.client.retro if seen[0] == self.number]:
             del self.client.retro[seen]

@@ -11,10 +11,11 @@ from bullet_sim.errors import SimulationError
 from bullet_sim.physics.assembly import Tree
 from bullet_sim.physics.auto_disable import AutoDisable
 from bullet_sim.physics.correcting_velocity import CorrectingVelocityLimit
+from bullet_sim.physics.crowding import Crowding
 from bullet_sim.physics.engine import STDOUT, EngineError, pybullet, quiet
 from bullet_sim.physics.island_sleeping import IslandSleeping
 from bullet_sim.physics.planes import Planes
-from bullet_sim.physics.urdf_text import MeshFiles, urdf_text
+from bullet_sim.physics.urdf_text import STATIC_FILTER, MeshFiles, urdf_text
 from bullet_sim.pose import Pose, Vector3
 
 log = logging.getLogger(__name__)
@@ -37,7 +38,7 @@ FEWEST_ITERATIONS = 150
 # worlds in which something is fast that does not roll on held wheels: a box at rest on a slope
 # meanwhile creeps at 0.13 mm/s.
 EXACT, FAST = 1e-7, 1e-5
-STATIC_FILTER = (2, -3)  # Bullet's group and mask of static bodies: they do not meet each other
+FREE_GROUPS = tuple(1 << bit for bit in range(24, 31))  # past those of <collide_bitmask>
 PLACING = (pybullet.loadURDF, pybullet.resetBasePositionAndOrientation)
 
 
@@ -55,6 +56,8 @@ class PhysicsClient:
     def __init__(self, physics: PhysicsDescription, gravity: Vector3):
         self.auto_disable = AutoDisable()
         self.planes = Planes(self._let_collide)
+        self.crowding = Crowding(self.read)
+        self.free_groups = list(FREE_GROUPS)  # for models of many loose links
         bodies, run = self.auto_disable.bodies, self.change_without_waking
         self._correcting_velocity = CorrectingVelocityLimit(run, bodies)
         self._island_sleeping = IslandSleeping(run, bodies)

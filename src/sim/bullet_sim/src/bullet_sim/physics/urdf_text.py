@@ -20,6 +20,7 @@ Triangles = description.Mesh | description.Generated
 MeshPath = Callable[[Triangles, bool], str]  # writes a mesh, or its hull, to a file
 LONGEST_NAME = 1023  # bytes of the engine's buffer; longer names overwrite other memory
 NO_LIMIT = 1e15  # limits at or beyond this mean none
+STATIC_FILTER = (2, -3)  # Bullet's group and mask of static bodies: they do not meet each other
 HULL_MARGIN = 1e-3  # m, by which the engine's hulls are larger than their corners (measured)
 
 
@@ -109,7 +110,10 @@ def _collision(collision: description.Collision, fixed: bool, mesh_path: MeshPat
     except FormatError as error:  # in a mesh file; the rest of the model still spawns
         log.warning("collision %s is left out: %s", collision.name, error)
         return ""
-    return (f"<collision{concave}>{_origin(collision.pose)}"
+    # The engine knows only a static body's base as such: its other links would touch the next body.
+    group, mask = STATIC_FILTER
+    static = f' group="{group}" mask="{mask}"' if fixed else ""
+    return (f"<collision{concave}{static}>{_origin(collision.pose)}"
             f"<geometry>{geometry}</geometry></collision>")
 
 
