@@ -70,8 +70,9 @@ def test_a_key_that_only_the_other_release_has(rosdep, tmp_path):
     assert (code, errors) == (1, f"rosdep: {key}: {why}\n") and "libroscpp-dev" in said
     add_package(tmp_path / "src", "eye", f"roscpp {key}")
     for command in (("install", "-y", "-s"), ("check",)):
-        _, _, said = rosdep(*command, "--from-paths", "src", "--ignore-src")
-        assert said == f"rosdep: {key} (for eye): {why}\n"
+        _, out, said = rosdep(*command, "--from-paths", "src", "--ignore-src")
+        assert "satisfied" not in out
+        assert said == f"rosdep: {key} (dependency of eye): {why}\n"
 
 
 @pytest.mark.parametrize("key, of_release, why", [
@@ -95,11 +96,20 @@ def test_what_nobody_has_does_not_stop_it_and_a_mistyped_key_is_named(rosdep, tm
     words = ("install", "--from-paths", "src", "--ignore-src", "-y", "-s")
     code, _, said = rosdep(*words)
     assert code == 0
-    assert said.startswith("rosdep: moveit_core (for arm): MoveIt is not in Debian")
+    assert said.startswith("rosdep: moveit_core (dependency of arm): MoveIt is not in Debian")
     add_package(tmp_path / "src", "wheel", "rospyy")
     code, _, said = rosdep(*words)
-    assert code == 1 and "rosdep: rospyy (for wheel): nobody has that name; is rospy meant?" in said
-    assert said.count("\n") == 2
+    assert code == 1 and said.count("\n") == 2
+    assert ("rosdep: rospyy (dependency of wheel): nobody has that name; is rospy meant?" in said)
+
+
+def test_no_success_is_told_where_a_key_is_mistyped(rosdep, tmp_path, monkeypatch):
+    monkeypatch.setenv("LC_ALL", "zh_CN.UTF-8")
+    add_package(tmp_path / "src", "pkg2", "rospyy")
+    words = ("--from-paths", "src", "--ignore-src")
+    line = "rosdep: rospyy（pkg2 依赖它）：没有叫这个名字的包；是不是想写 rospy？\n"
+    assert rosdep("install", *words, "-y") == (1, "", line)
+    assert rosdep("check", *words) == (1, "", line)
 
 
 def test_robust_skipped_keys_and_a_folder_called_install(rosdep, tmp_path):

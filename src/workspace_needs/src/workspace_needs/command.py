@@ -39,16 +39,21 @@ def _provide(source: Path, simulate: bool) -> list[Verdict]:
         verdicts = judge(source)
         missing = {name for verdict in verdicts for name in verdict.missing} - tried
         if missing or not tried:
-            _install(sorted(missing), len(verdicts), simulate)
+            _install(sorted(missing), len(verdicts), simulate, source)
         if simulate or not missing:
             return verdicts
         tried |= missing
 
 
-def _install(missing: list[str], packages: int, simulate: bool) -> None:
+def _install(missing: list[str], packages: int, simulate: bool, source: Path) -> None:
     of = "1 package" if packages == 1 else f"{packages} packages"
-    if not packages:
-        print("no package of your own is in it; setup sees to those of this repository")
+    usual = Path("~/catkin_ws/src").expanduser()
+    if not packages and usual.is_dir() and not usual.samefile(source):
+        print(f"{source}: no package of your own is in it; for those in ~/catkin_ws type: "
+              "make deps WS=~/catkin_ws")
+    elif not packages:
+        print(f"{source}: no package of your own is in it; setup sees to those of this "
+              "repository")
     elif not missing:
         print(f"{of}: all that Debian has for them is installed")
     elif simulate:

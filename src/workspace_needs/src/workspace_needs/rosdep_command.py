@@ -19,6 +19,8 @@ COMMANDS = ("check", "db", "fix-permissions", "init", "install", "keys", "resolv
             "what-needs", "where-defined")
 WITH_VALUES = ("--rosdistro", "--os", "--filter-for-installers", "--sources-cache-dir", "-c")
 OF_A_WORKSPACE = ("install", "check")
+SUCCESS = ("#All required rosdeps installed successfully",  # rosdep's own lines
+           "All system dependencies have been satisfied")
 LIBRARY = Path(sys.prefix) / "rosdep"  # a folder of its own: see dependencies/packages.yaml
 
 
@@ -123,7 +125,7 @@ class Watch:
 
     def patch(self, simulate: bool) -> None:
         """Patch rosdep for the rest of this process."""
-        from rosdep2 import installers, lookup
+        from rosdep2 import installers, lookup, main
         from rosdep2.platforms import debian
 
         view_lookup, get_rosdeps = lookup.RosdepView.lookup, lookup.RosdepLookup.get_rosdeps
@@ -148,6 +150,11 @@ class Watch:
             yes = [] if interactive else ["-y"]
             return [installer.elevate_priv(["apt-get", "install", *yes, *wanted])] if wanted else []
 
+        def say(*words, **options):
+            if not (words[:1] and words[0] in SUCCESS and any(self.told())):
+                print(*words, **options)
+
+        main.print = say
         lookup.RosdepView.lookup = look_up
         lookup.RosdepLookup.get_rosdeps = ask
         debian.AptInstaller.get_install_command = one_command
@@ -186,6 +193,7 @@ class Watch:
         here = set(rospkg.RosPack().list())  # now includes the folders of --from-paths
         for key in sorted(set(self._not_had) & set(self._askers) - here):
             answer = self._tables.answer(key)
-            line = f"rosdep: {key} (for {', '.join(sorted(self._askers[key]))}): {answer.why}"
+            askers = ", ".join(sorted(self._askers[key]))
+            line = f"rosdep: {key} (dependency of {askers}): {answer.why}"
             (absent if answer.kind == ABSENT else unknown).append(line)
         return absent, unknown

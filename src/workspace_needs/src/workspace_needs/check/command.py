@@ -36,7 +36,8 @@ def main(argv: list[str] | None = None) -> int:
         prog="check",
         description="Says what of a robot, world, package or workspace will work here.",
         epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", help="file (.urdf .xacro .sdf .world .launch .py), model "
+    parser.add_argument("what", metavar="FILE|PACKAGE|WORKSPACE",
+                        help="file (.urdf .xacro .sdf .world .launch .py), model "
                                      "folder, package or workspace")
     parser.add_argument("launch", nargs="?", help="launch file of the package")
     parser.add_argument("arguments", nargs="*", default=[], metavar="name:=value",
