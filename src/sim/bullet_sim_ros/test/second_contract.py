@@ -16,7 +16,7 @@ from gzserver_process import LIMIT, NODE, Gzserver, wait_until
 
 LINE = re.compile(r"A simulator runs already on this master \(world camera_robot, started \d+ "
                   r"(s|min) ago\)(\. End it with Ctrl-C in its terminal|, without a terminal\. "
-                  r"End it and all other nodes with: rosnode kill -a), then type this again\.")
+                  r"End it and what was started with it: kill [\d ]+), then type this again\.")
 SERVER = ("rosrun", "gazebo_ros", "gzserver")
 FIRST_ROBOT, SECOND_ROBOT = "the first's", "the second's"
 SECOND_LAUNCH = f"""<launch>

@@ -11,7 +11,7 @@ import psutil
 import pytest
 
 from bullet_sim_ros import already_running
-from bullet_sim_ros.already_running import Sign, lacks_terminal, registering, sign_of_life
+from bullet_sim_ros.already_running import Sign, registering, sign_of_life, without_terminal
 
 LIMIT = 60.0  # s
 NAME = "/gazebo"
@@ -76,8 +76,27 @@ def test_a_node_without_a_terminal(monkeypatch, has_terminal, its_pid, parent, l
     monkeypatch.setattr(psutil.Process, "ppid", lambda self: parent)
     monkeypatch.setattr(os, "getsid", lambda pid: pid)
     with (serving(xmlrpc_server(getPid=lambda _: [1, "", pid])) as node,
-          serving(xmlrpc_server(lookupNode=lambda _caller, _node: [1, "", node])) as master):
-        assert lacks_terminal(master, NAME) is lacks
+          serving(master_of(node)) as master):
+        assert without_terminal(master, NAME) == ([pid] if lacks else [])
+
+
+def master_of(node):
+    """A master in this process, with /gazebo at this URI and a node that has ended."""
+    return xmlrpc_server(
+        lookupNode=lambda _caller, name: [1, "", node] if name == NAME else [-1, "unknown", ""],
+        getSystemState=lambda _: [1, "", [[["/clock", [NAME, "/gone"]]], [], []]],
+        getPid=lambda _: [1, "", os.getpid()])
+
+
+def test_a_roslaunch_without_a_terminal_ends_what_it_started(monkeypatch):
+    monkeypatch.setattr(psutil.Process, "terminal", lambda _: None)
+    monkeypatch.setattr(psutil.Process, "ppid", lambda _: 7)
+    monkeypatch.setattr(psutil.Process, "parents", lambda _: [psutil.Process(os.getppid())])
+    monkeypatch.setattr(psutil.Process, "cmdline", lambda self: [
+        "python3", "/usr/bin/roslaunch" if self.pid == os.getppid() else "node"])
+    with (serving(xmlrpc_server(getPid=lambda _: [1, "", os.getpid()])) as node,
+          serving(master_of(node)) as master):
+        assert without_terminal(master, NAME) == [os.getppid()]
 
 
 def test_a_machine_whose_name_is_not_known_may_have_it():

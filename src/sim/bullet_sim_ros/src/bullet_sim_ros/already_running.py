@@ -17,6 +17,7 @@ import xmlrpc.client
 from collections.abc import Iterator
 from contextlib import contextmanager
 from enum import Enum
+from pathlib import Path
 from urllib.parse import urlsplit
 from xml.parsers.expat import ExpatError
 
@@ -29,6 +30,7 @@ from bullet_sim_ros.names import CLOCK
 ANSWER_TIME = 2.0  # s, wall, for a connection and for an answer
 TURN_TIME = 15.0  # s, wall; a registration takes 0.1 s
 LOOK_PERIOD = 0.02  # s, wall
+LAUNCHERS = {"roslaunch", "roscore"}
 
 
 class Sign(Enum):
@@ -83,23 +85,37 @@ def sign_of_life(master_uri: str, name: str) -> Sign:
     return Sign.ANSWERS if told == name else Sign.GONE
 
 
-def lacks_terminal(master_uri: str, name: str) -> bool:
-    """Whether a node runs on this machine without a terminal, where no Ctrl-C can end it, as after
-    `kill -9` of its roslaunch. A program in a terminal, such as make, may have started that
-    roslaunch in a session of its own.
+def without_terminal(master_uri: str, name: str) -> list[int]:
+    """What to kill where a node runs on this machine without a terminal, so that no Ctrl-C can end
+    it, as after `kill -9` of its roslaunch: its process, those of the other such nodes and of the
+    master, or the roslaunch that they still have. None if it has a terminal.
     """
-    _, _, uri = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport(ANSWER_TIME)).lookupNode(
-        name, name)
+    master = xmlrpc.client.ServerProxy(master_uri, ImpatientTransport(ANSWER_TIME))
+    own = _without_terminal(master.lookupNode(name, name)[2], name)
+    if own is None:
+        return []
+    names = {node for kind in master.getSystemState(name)[2] for _, nodes in kind for node in nodes}
+    uris = [master_uri, *(master.lookupNode(name, node)[2] for node in sorted(names))]
+    return sorted({own, *(_without_terminal(uri, name) for uri in uris)} - {None})
+
+
+def _without_terminal(uri: str, caller: str) -> int | None:
+    """The process of the node or master at this URI, or the roslaunch that it has; None if it has
+    a terminal. A program in a terminal, such as make, may have started that roslaunch in a session
+    of its own.
+    """
     with contextlib.suppress(psutil.Error, OSError, xmlrpc.client.Error, ExpatError, TypeError,
                              ValueError):
         node = xmlrpc.client.ServerProxy(uri, ImpatientTransport(ANSWER_TIME))
-        process = psutil.Process(node.getPid(name)[2])
+        process = psutil.Process(node.getPid(caller)[2])
         if urlsplit(uri).port not in {one.laddr.port for one in process.net_connections("tcp")}:
-            return False  # a number of another machine, or of a container
+            return None  # a number of another machine, or of a container
         orphaned = psutil.Process(os.getsid(process.pid)).ppid() == 1  # whose terminal is another's
-        parents = () if orphaned else process.parents()
-        return not any(each.terminal() for each in (process, *parents))
-    return False
+        above = () if orphaned else process.parents()
+        if not any(each.terminal() for each in (process, *above)):
+            return next((each.pid for each in above if LAUNCHERS & {
+                Path(word).name for word in each.cmdline()[:2]}), process.pid)
+    return None
 
 
 @contextmanager

@@ -17,16 +17,16 @@ from bullet_sim_ros import names
 from bullet_sim_ros.already_running import (
     Sign,
     full_name,
-    lacks_terminal,
     registering,
     sign_of_life,
+    without_terminal,
 )
 
 DEFAULT_NAME = "gazebo"
 RUNS_ALREADY = ("A simulator runs already on this master (%s). End it with Ctrl-C in its terminal, "
                 "then type this again.")
-NO_TERMINAL = ("A simulator runs already on this master (%s), without a terminal. End it and "
-               "all other nodes with: rosnode kill -a, then type this again.")
+NO_TERMINAL = ("A simulator runs already on this master (%s), without a terminal. End it and what "
+               "was started with it: kill %s, then type this again.")
 HANGS = ("A simulator is on this master, but does not answer (%s). End it with: killall -9 "
          "gzserver, then type this again.")
 UNKNOWN = ("A simulator is registered on this master (%s), by a machine whose name this one "
@@ -44,8 +44,10 @@ def refusal(master_uri: str, name: str) -> tuple[str, ...]:
     sign = sign_of_life(master_uri, name)
     if sign is Sign.GONE:
         return ()
-    alone = sign is Sign.ANSWERS and lacks_terminal(master_uri, name)
-    return NO_TERMINAL if alone else SAYINGS[sign], _what_runs(master_uri, name)
+    alone = without_terminal(master_uri, name) if sign is Sign.ANSWERS else []
+    if alone:
+        return NO_TERMINAL, _what_runs(master_uri, name), " ".join(map(str, alone))
+    return SAYINGS[sign], _what_runs(master_uri, name)
 
 
 def register(world: str) -> bool:
