@@ -15,8 +15,9 @@ def show_background():
     try:
         rospy.loginfo("background: r %d, g %d, b %d", *[rospy.get_param(name) for name in NAMES])
     except KeyError as error:
-        sys.exit(f"parameter_config.py: no parameter {error}: start turtlesim first, "
-                 "rosrun turtlesim turtlesim_node  请先启动 turtlesim")
+        sys.exit(f"parameter_config.py: no parameter {error}: turtlesim sets it as it starts; "
+                 "end it if it runs, and type rosrun turtlesim turtlesim_node  "
+                 "请启动（或重启）turtlesim")
 
 
 def main():

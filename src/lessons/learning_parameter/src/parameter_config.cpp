@@ -16,8 +16,9 @@ bool showBackground() {
   for (const std::string& name : NAMES) {
     int value;
     if (!ros::param::get(name, value)) {
-      std::cerr << "parameter_config: no parameter '" << name << "': start turtlesim first, "
-                << "rosrun turtlesim turtlesim_node  请先启动 turtlesim\n";
+      std::cerr << "parameter_config: no parameter '" << name << "': turtlesim sets it as it "
+                << "starts; end it if it runs, and type rosrun turtlesim turtlesim_node  "
+                << "请启动（或重启）turtlesim\n";
       return false;
     }
     values.push_back(value);

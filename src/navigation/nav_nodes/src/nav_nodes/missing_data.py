@@ -180,5 +180,7 @@ def _watch_clock(missing_data: MissingData) -> None:
 
 def _why_clock_stands(ticks: rospy.Subscriber) -> str:
     advice = ("its publisher is silent, is the simulation paused?" if is_published(ticks)
-              else "nobody publishes it; start the simulator in another terminal.")
+              else "nobody publishes it; start the simulator in another terminal, for nav_demo "
+              "with roslaunch urdf02_gazebo demo02_obstacles.launch, for TurtleBot3 with "
+              "roslaunch turtlebot3_gazebo turtlebot3_world.launch.")
     return f"{advice} Without one, set use_sim_time to false where it is set to true"
