@@ -25,6 +25,11 @@ meant() {
 }
 case "${1:-}" in
   --no-command)
+    lesson=src/lessons/lane_keeping
+    if sed -n 's/^\([a-z]*\): ## .*/\1/p' "$root/$lesson/Makefile" | grep -qxF -e "$2"; then
+      say $"make $2 is a command of the lesson $lesson; type: make -C $lesson $2"
+      exit
+    fi
     mapfile -t verbs < <(sed -n 's/^\([a-z-]*\):.*## .*/\1/p' "$root/Makefile")
     say $"make has no command $2;""$(meant "$2" "${verbs[@]}")"$" \`make\` alone lists them" ;;
   --no-option)

@@ -104,6 +104,8 @@ def test_the_scripts_follow_the_locale(environment: dict[str, str], word: str) -
 
 @pytest.mark.parametrize(("words", "english", "chinese"), [
     ("corse", "make has no command corse; is course meant?", "是不是想输入 course？"),
+    ("go", "make go is a command of the lesson src/lessons/lane_keeping; type: make -C "
+           "src/lessons/lane_keeping go", "请输入：make -C src/lessons/lane_keeping go"),
     ("course LAP=2", "make course has no option LAP=; is LAPS meant?", "是不是想输入 LAPS？"),
     ("course FAST=maybe", "FAST=: write 1 or 0, or leave it out", "FAST=：请写 1 或 0，或者不写"),
     ("lane FAST=' PEOPLE=`", "FAST= PEOPLE=: write 1 or 0, or leave it out", "请写 1 或 0"),
