@@ -20,7 +20,6 @@ from std_msgs.msg import Bool, Float64
 
 WAKE = 0.02  # s, wall: how often to check for a sender's end, whatever the clock does
 STILL_CLOCK = 0.1  # s, wall, between repeated commands while simulated time is paused
-UNHEARD_TIME = 20.0  # s, wall, that the controllers may take to come
 FLUSH_TIME = 0.1  # s, wall: rospy's threads need this to send before the process ends
 
 
@@ -71,12 +70,6 @@ class MotorControl:
             if msg.data:
                 self.motor.forget()  # no earlier command is resumed afterwards
             self.send(self.motor.drive(rospy.get_time()))
-
-    def tell_if_unheard(self):
-        if not any(each.get_num_connections() for each in self.publishers.values()):
-            rospy.logwarn("no controller listens to %s: start the car with roslaunch "
-                          "racecar_description racecar.launch",
-                          next(iter(self.publishers.values())).resolved_name)
 
     def change(self, settings):
         with self.lock:
@@ -131,9 +124,6 @@ def main():
     ending = Ending()
     control = MotorControl(read_settings(MotorSettings, "car_control.yaml", "motor_control"))
     serve_settings(control.motor.settings, checked, control.change)
-    look = threading.Timer(UNHEARD_TIME, control.tell_if_unheard)
-    look.daemon = True
-    look.start()
     control.spin(ending)
     control.stop()
     ending.done()

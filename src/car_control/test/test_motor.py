@@ -4,7 +4,6 @@ import math
 import runpy
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from unittest.mock import MagicMock
 
 import pytest
@@ -104,19 +103,6 @@ def test_the_tutorial_s_node_sends_what_ours_does_by_its_law(monkeypatch):
     page["MotorControl"]().take(command)
     ours = controller_commands(PAGE, DriveCommand(1.5, -0.2))
     assert told == {f"{PAGE.namespace}/{name}/command": value for name, value in ours.items()}
-
-
-def test_a_car_that_nobody_started_is_said(monkeypatch):
-    script = runpy.run_path(str(SCRIPT))
-    said = []
-    monkeypatch.setattr(rospy, "logwarn", lambda form, *words: said.append(form % words))
-    for listeners in ([0, 1], [0, 0]):
-        script["MotorControl"].tell_if_unheard(SimpleNamespace(publishers={
-            number: SimpleNamespace(resolved_name=f"/wheel_{number}/command",
-                                    get_num_connections=lambda heard=heard: heard)
-            for number, heard in enumerate(listeners)}))
-    assert said == ["no controller listens to /wheel_0/command: start the car with roslaunch "
-                    "racecar_description racecar.launch"]
 
 
 def test_every_table_of_car_control_is_complete_and_explained():

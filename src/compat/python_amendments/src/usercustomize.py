@@ -31,7 +31,7 @@ AMENDMENTS = {
     "rospy.impl.registration": ["node_end.amend_registration"],
     "rospy.impl.tcpros_pubsub": ["node_end.amend_publishing"],
     "rospy.impl.tcpros_service": ["waiting.amend_services"],
-    "rospy.topics": ["waiting.amend_topics"],
+    "rospy.topics": ["waiting.amend_topics", "unheard.amend_publishers"],
     "tf2_ros.buffer": ["waiting.amend_frames"],
     "tkinter": ["no_screen.amend_tkinter"],
     "yaml": ["old_names.amend_yaml"],

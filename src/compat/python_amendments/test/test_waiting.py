@@ -35,16 +35,6 @@ def gone():
 
 
 @pytest.fixture
-def said(monkeypatch):
-    """What the node logs."""
-    lines = []
-    monkeypatch.setattr(rospy, "logwarn", lambda form, *values: lines.append(form % values))
-    monkeypatch.setattr(waiting, "SAID", set())
-    monkeypatch.setattr(rospy, "is_shutdown", lambda: False)
-    return lines
-
-
-@pytest.fixture
 def asked(monkeypatch):
     """Closes a connection of a subscriber; what was looked into then: topics and publishers."""
     found = []
@@ -172,6 +162,15 @@ def test_why_no_pose_of_a_turtle_comes(said, master):
         "and start it with /pose:=/turtle1/pose."]
 
 
+def test_the_first_programs_wait_for_a_known_publisher(said, master):
+    waiting.tell_of_silence("/person_info", "learning_topic/Person")
+    master.topics["/chatter"] = "std_msgs/String", ["/talker"]
+    waiting.tell_of_silence("/chatter", "std_msgs/String")
+    assert said == ["Nothing on /person_info yet: nobody publishes it. Type in another terminal: "
+                    "rosrun learning_topic person_publisher.py; this program then goes on by "
+                    "itself."]
+
+
 @pytest.mark.parametrize(("program", "topic", "typed"), [
     ("learning_topic/scripts/01follower.py", TOPIC, "learning_topic 0course.launch"),
     ("car_control/scripts/lane_follow.py", "", "racecar_description car_control.launch"),
@@ -183,9 +182,20 @@ def test_the_course_of_a_program(monkeypatch, program, topic, typed):
     assert waiting.course(topic) == f"roslaunch {typed}"
 
 
+@pytest.mark.parametrize(("program", "line"), [
+    ("turtlesim/nodes/turtle_teleop_key", "Type roscore in another terminal, and rosrun turtlesim "
+     "turtlesim_node in a third one; this program"),
+    ("compat/turtlesim/nodes/turtlesim_node", "Type roscore in another terminal; this program"),
+    ("rospy_tutorials/001_talker_listener/listener", "Type roscore in another terminal; this"),
+    ("learning_topic/scripts/01follower.py", "Type roscore in another terminal, or start the")])
+def test_without_a_master_only_what_the_program_needs_is_named(monkeypatch, program, line):
+    monkeypatch.setattr(sys, "argv", [str(SRC / program)])
+    assert waiting.no_master("URI", "roscore").startswith(f"No ROS master at URI. {line}")
+
+
 @pytest.mark.parametrize("command", [*waiting.COURSES.values(), waiting.LINE_COURSE])
 def test_each_course_has_its_launch_file(command):
-    _, package, file = command.split()
+    _, package, file, *_ = command.split()
     assert list(SRC.glob(f"**/{package}/launch/{file}"))
 
 
@@ -307,12 +317,13 @@ def test_a_topic_that_was_heard_is_not_missed(subscribe):
     heard.receive_callback("message", "connection")
     heard.closed = True  # its publisher has ended, too
     subscribe("/scan")
-    subscribe("/chatter", "std_msgs/String")
+    subscribe("/mine", "std_msgs/String")
     assert heard.received == ("message", "connection") and len(subscribe.looks) == 1
     subscribe.looks[0]()
     assert subscribe.told == []
     subscribe("/turtle9/pose", "turtlesim/Pose")
-    assert len(subscribe.looks) == 2
+    subscribe("/chatter", "std_msgs/String")
+    assert len(subscribe.looks) == 3
 
 
 def test_waiting_in_a_loop_starts_one_timer_and_is_told(subscribe):

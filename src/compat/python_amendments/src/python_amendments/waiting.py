@@ -27,6 +27,10 @@ OF_A_LAUNCH = "__log:="  # an argument of its nodes, which start before what the
 LAUNCH_GRACE = 20.0  # s, wall
 NO_MASTER = ("No ROS master at %s. Type %s in another terminal, or start the course there: "
              "%s; this program then goes on by itself.")
+ONLY_NO_MASTER = ("No ROS master at %s. Type %s in another terminal; this program then goes on by "
+                  "itself.")
+NO_MASTER_NOR_TURTLE = ("No ROS master at %s. Type %s in another terminal, and rosrun turtlesim "
+                        "turtlesim_node in a third one; this program then goes on by itself.")
 NO_SIMULATOR = ("Nothing on %s yet: nobody publishes it, and no simulator runs. Start the course "
                 "in another terminal: %s; this program then goes on by itself.")
 OTHER_TOPIC = ("Nothing on %s yet: nobody publishes it. If %s is meant, end this program and start "
@@ -34,8 +38,8 @@ OTHER_TOPIC = ("Nothing on %s yet: nobody publishes it. If %s is meant, end this
 NO_SENSOR = "Nothing on %s yet: no robot of the simulator that runs has such a sensor."
 NO_TURTLE = ("Nothing on %s yet: there is no turtle %s. Type in another terminal: rosservice call "
              "/spawn 2 2 0 %s; this program then goes on by itself.")
-NO_TURTLESIM = ("Nothing on %s yet: nobody publishes it. Type in another terminal: rosrun "
-                "turtlesim turtlesim_node; this program then goes on by itself.")
+NO_PUBLISHER = ("Nothing on %s yet: nobody publishes it. Type in another terminal: %s; this "
+                "program then goes on by itself.")
 STILL = "Nothing on %s yet, though it is published: is the simulation paused?"
 # With the command that starts who does, and where it is not known.
 NO_SERVICE = ("Nobody offers the service %s yet. Type in another terminal: %s; this program then "
@@ -60,20 +64,37 @@ COURSES = {
     "ai_robot_tracking": "roslaunch ai_robot_tracking start_tracking.launch",
     "car_control": "roslaunch racecar_description car_control.launch",
     "lane_keeping": "roslaunch lane_keeping lane.launch",
+    "keyboard_control.py": "roslaunch racecar_description car_control.launch keyboard:=false",
     "learning_autorace": "roslaunch learning_autorace autorace.launch",
     "learning_laser": "roslaunch learning_laser hall.launch",
+    "motor_control.py": "roslaunch racecar_description racecar.launch",
+    "motor_control_page.py": "roslaunch racecar_description racecar.launch",
+    "turtlebot3_teleop": "roslaunch turtlebot3_gazebo turtlebot3_world.launch",
     "/camera": "roslaunch lane_keeping lane.launch",
     "/camera/image": "roslaunch learning_autorace autorace.launch",
     "/camera/image_raw": "roslaunch racecar_description car_control.launch"}
 LINE_COURSE = "roslaunch learning_topic 0course.launch"
-# What starts who offers a service or an action, or publishes a frame, perhaps for a program.
+TURTLESIM = "rosrun turtlesim turtlesim_node"
+# Packages and programs that need no course: whether they need turtlesim.
+NEED_TURTLES = {
+    "actionlib_tutorials": False, "learning_action": False, "learning_parameter": True,
+    "learning_service": False, "turtle_command_server.py": True, "turtle_spawn.py": True,
+    "turtle_switch.py": True, "learning_tf": True, "multi_tf_sub.py": False,
+    "static_tf_pub.py": False, "static_tf_sub.py": False, "person_publisher.py": False,
+    "person_subscriber.py": False, "pose_subscriber.py": True, "velocity_publisher.py": True,
+    "rospy_tutorials": False, "tf": False, "tf2_ros": False, "turtle_actionlib": True,
+    "turtle_tf": True, "turtle_tf2": True, "turtlesim": True, "turtlesim_node": False}
+# What starts who publishes a topic or a frame, or offers a service or an action, perhaps for a
+# program.
 STARTED_BY = {
     "/add_two_ints": "rosrun rospy_tutorials add_two_ints_server",
     "/addInts": "rosrun learning_action action01_server.py",
-    "/clear": "rosrun turtlesim turtlesim_node",
+    "/chatter": "rosrun rospy_tutorials talker",
+    "/clear": TURTLESIM,
     "/fibonacci": "rosrun actionlib_tutorials fibonacci_server.py",
+    "/person_info": "rosrun learning_topic person_publisher.py",
     "/show_person": "rosrun learning_service person_server.py",
-    "/spawn": "rosrun turtlesim turtlesim_node",
+    "/spawn": TURTLESIM,
     "/turtle_shape": "rosrun turtle_actionlib shape_server",
     "dynamic_tf_sub.py turtle1": "rosrun learning_tf dynamic_tf_pub.py",
     "radar": "rosrun learning_tf static_tf_pub.py",
@@ -121,7 +142,15 @@ def wait_for_master():
         if hasattr(sys, "ps1"):
             raise rospy.exceptions.ROSInitException(translated(fault))
         sys.exit(translated(fault))
-    listening.wait_for_master(uri, translated(NO_MASTER % (uri, listening.roscore(uri), course())))
+    listening.wait_for_master(uri, translated(no_master(uri, listening.roscore(uri))))
+
+
+def no_master(uri, roscore):
+    """The line of this program while there is no master."""
+    needs = [NEED_TURTLES[word] for word in words_of_program() if word in NEED_TURTLES]
+    if not needs:
+        return NO_MASTER % (uri, roscore, course())
+    return (NO_MASTER_NOR_TURTLE if needs[0] else ONLY_NO_MASTER) % (uri, roscore)
 
 
 def amend_services(services):
@@ -183,7 +212,8 @@ def amend_topics(topics):
     def __init__(subscriber, *words, **options):
         begin(subscriber, *words, **options)
         name = subscriber.resolved_name
-        if subscriber.type not in SEEN or awaited.get(name, subscriber) is HEARD:
+        if awaited.get(name, subscriber) is HEARD or not (
+                subscriber.type in SEEN or name in STARTED_BY):
             return
         if name not in awaited:
             after_grace(look, name)
@@ -248,8 +278,10 @@ def tell_of_silence(name, kind):
         tell_once(STILL, name)
     elif name in publishers:  # by a driver, which knows when it has something
         return
+    elif name in STARTED_BY:
+        tell_once(NO_PUBLISHER, name, STARTED_BY[name])
     elif kind == TURTLES and not alike:
-        tell_once(NO_TURTLESIM, name)
+        tell_once(NO_PUBLISHER, name, TURTLESIM)
     elif kind == TURTLES and place and end == "pose":
         turtle = place.rpartition("/")[2]
         tell_once(NO_TURTLE, name, turtle, turtle)
@@ -264,8 +296,13 @@ def tell_of_silence(name, kind):
 
 def course(topic=""):
     """The command that starts what this program, or one that reads the topic, is written for."""
-    known = [*PurePath(os.path.realpath(sys.argv[0])).parts[::-1], topic]
+    known = [*words_of_program(), topic]
     return next((COURSES[word] for word in known if word in COURSES), LINE_COURSE)
+
+
+def words_of_program():
+    """The names of this program and of the folders above it."""
+    return PurePath(os.path.realpath(sys.argv[0])).parts[::-1]
 
 
 def tell_of_service(service):
