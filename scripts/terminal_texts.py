@@ -46,12 +46,16 @@ OF_ARGPARSE = (
     "show program's version number and exit", "{0}: error: {1}", "argument {0}: {1}",
     "the following arguments are required: {0}", "unrecognized arguments: {0}",
     "invalid choice: {0} (choose from {1})", "invalid {0} value: {1}",
+    "invalid float value: {0}", "invalid int value: {0}",
     "expected one argument", "expected at least one argument", "expected {0} arguments",
     "not allowed with argument {0}", "one of the arguments {0} is required")
 # Of the system, by the error numbers that a learner meets.
 OF_SYSTEM = (
     "No such file or directory", "Permission denied", "Is a directory", "Not a directory",
     "File exists", "No space left on device", "Connection refused")
+# Of rospy and of turtlesim's answer in it.
+OF_ROSPY = ("service [{0}] responded with an error: b'service cannot process request: {1}'",
+            "A turtle named [{0}] already exists")
 # Of Tk.
 OF_TK = ("no display name and no $DISPLAY environment variable",
          "couldn't connect to display {0}")
@@ -132,7 +136,8 @@ OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its pla
 OF_VALUES = ("none", "unknown", "a number", "this user", "parent link", "child link", "link",
              "joint", "model", "sensor", "function call", "function definition", "class definition",
              "literal", "expression", "attribute", "simulated clock /clock", "the disk", "driving",
-             "scene", "tracker", "follower", "reached", "contact", "late")
+             "scene", "tracker", "follower", "mission", "method", "avoider", "reached", "contact",
+             "late")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "hint", "ignored",
             "works",  # its words
             "world {0} ({1} models)", "model {0} ({1} links, {2} joints)", "the text",
@@ -247,6 +252,7 @@ def python_texts() -> dict[str, list[str]]:
     """Each text that a program prints, and the files that it is in."""
     found: dict[str, list[str]] = {text: ["Python's argparse"] for text in OF_ARGPARSE}
     found |= {text: ["the system"] for text in OF_SYSTEM}
+    found |= {text: ["rospy"] for text in OF_ROSPY}
     found |= {text: ["Tk"] for text in OF_TK}
     found |= {text: ["expat"] for text in OF_EXPAT}
     found |= {text: ["catkin"] for text in OF_CATKIN}

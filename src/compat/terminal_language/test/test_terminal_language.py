@@ -231,6 +231,14 @@ def test_a_catalogue_is_read_once():
      "gz model: 要对模型做什么？"),
     ("spawn_model: error: one of the arguments -file -param is required",
      "必须给出这些参数之一：-file -param"),
+    ("make_track: error: argument --random: 'x' must be a whole number from 0",
+     "make_track: 错误：参数 --random：'x' 必须是不小于 0 的整数"),
+    ("spawn_model: error: argument -x: invalid float value: 'abc'", "参数 -x：'abc' 不是数字"),
+    ("autorace: no mission 'foo' (MISSION=); there are: all",
+     "没有任务 'foo'（MISSION=）；可用的有"),
+    ("no turtle: service [/spawn] responded with an error: b'service cannot process request: A "
+     "turtle named [turtle2] already exists': is there a turtle2 already?  是否已有同名海龟？",
+     "没有生成海龟：服务 [/spawn] 拒绝了：A turtle named [turtle2] already exists"),
     ('not yet: "a" passed to lookupTransform argument target_frame does not exist. ',
      '还没有：没有坐标系 "a"（lookupTransform 的参数 target_frame）')])
 def test_no_english_word_is_left_within_a_translated_line(english, part):

@@ -20,7 +20,7 @@ class TurtleCommand:
     def command_callback(self, _request):
         """Runs once for each call, in its own thread.  每次调用执行一次。"""
         self.driving = not self.driving
-        rospy.loginfo("publish velocity: %s", "yes" if self.driving else "no")
+        rospy.loginfo("publish velocity: yes" if self.driving else "publish velocity: no")
         return TriggerResponse(success=True, message="Change turtle command state!")
 
     def publish_command(self):

@@ -244,3 +244,7 @@ def test_a_missing_world_of_a_folder_is_looked_for_among_its_neighbours(resource
     with pytest.raises(ResourceNotFound, match=r"did you mean moving\.world") as caught:
         resources.find_world(str(tmp_path / "movng.world"))
     assert "empty.world" not in str(caught.value)
+    (tmp_path / "lane.world").touch()
+    with pytest.raises(ResourceNotFound) as caught:
+        resources.find_world(str(tmp_path / "nope.world"))
+    assert "did you mean" not in str(caught.value)

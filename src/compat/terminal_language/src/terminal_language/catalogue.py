@@ -15,6 +15,7 @@ PLACE = re.compile(r"\{(\d+)\}")
 AROUND = re.compile(r"((?:\s|\x1b\[[\d;]*[A-Za-z])*(?:\[\w+\] (?:\[[\d., ]+\]: )?)?)(.*?)"
                     r"((?:\s|\x1b\[[\d;]*[A-Za-z])*)", re.DOTALL)
 PROGRAM = re.compile(r"(?:gz )?[A-Za-z_]\w*")  # before its text
+FAULT = "{0}: error: {1}"  # argparse's, of a program's arguments
 JOINTS = re.compile(r"(: |; )")
 # Such as argparse's default.
 IN_BRACKETS = re.compile(r"(.+)( \((?:[^()]|\([^()]*\))*\))", re.DOTALL)
@@ -115,6 +116,10 @@ class Catalogue:
         """The translation of the text, or of its parts between colons and semicolons."""
         if text in self._exact:
             return self._exact[text]
+        name, _, fault = text.partition(": error: ")
+        if fault.startswith("argument ") and FAULT in self._exact:
+            return Sentence(FAULT, self._exact[FAULT]).filled(
+                {0: name, 1: self._message(fault, depth) or fault})
         name, _, rest = text.partition(": ")
         program = PROGRAM.fullmatch(name)
         if program and rest in self._exact:

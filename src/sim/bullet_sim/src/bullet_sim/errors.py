@@ -56,7 +56,15 @@ def nearest_file(path: Path | str) -> str:
         beside = os.listdir(path.parent)
     except OSError:
         return ""
-    return did_you_mean(path.name, beside, 0.75)
+    return _file_meant(path.name, beside)
+
+
+def _file_meant(name: str, known: Iterable[str]) -> str:
+    """The end of a line; names are alike by what stands before their suffixes, mostly the same."""
+    stem = Path(name).stem
+    alike = [each for each in known
+             if difflib.SequenceMatcher(None, Path(each).stem, stem).ratio() > 0.65]
+    return did_you_mean(name, alike, 0.0)
 
 
 def _some(names: Sequence[str]) -> str:
@@ -77,7 +85,7 @@ class ResourceNotFound(SimulationError):
         nearest = difflib.get_close_matches(Path(uri).name, by_name, len(by_name) or 1, 0.0)
         there_are = f"; there are: {_some([by_name[name] for name in nearest])}" if by_name else ""
         super().__init__(f"{uri} not found (searched: {places})"
-                         f"{hint or did_you_mean(Path(uri).name, by_name, 0.75)}{there_are}")
+                         f"{hint or _file_meant(Path(uri).name, by_name)}{there_are}")
 
 
 class UnknownName(SimulationError):
