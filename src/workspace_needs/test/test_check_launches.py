@@ -179,16 +179,21 @@ def test_launch_files_that_do_not_end(check, tmp_path, inside, words):
     assert code == 1 and words in line, said
 
 
-def test_packages_that_are_not_there_are_looked_for_once(check, monkeypatch):
-    crawled, crawl = [], rospkg.rospack.list_by_path
-    monkeypatch.setattr(rospkg.rospack, "list_by_path",
-                        lambda *what: crawled.append(what) or crawl(*what))
+def test_packages_that_are_not_there_are_looked_for_once(check, monkeypatch, tmp_path):
+    crawled, crawl = tmp_path / "crawled", rospkg.rospack.list_by_path
+
+    def counting(*what):  # in the process that reads the file
+        with crawled.open("a") as file:
+            file.write("x")
+        return crawl(*what)
+
+    monkeypatch.setattr(rospkg.rospack, "list_by_path", counting)
 
     def folders_crawled(count):
-        crawled.clear()
+        crawled.write_text("")
         nodes = "".join(f'<node pkg="no_such_{i}" type="t" name="n{i}"/>' for i in range(count))
         assert check("a.launch", f"<launch>{nodes}</launch>")[1].count("clone it") == count
-        return len(crawled)
+        return len(crawled.read_text())
 
     assert folders_crawled(5) == folders_crawled(1) > 0
 
