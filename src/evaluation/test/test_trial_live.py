@@ -2,8 +2,10 @@
 
 import errno
 import os
+import signal
 import subprocess
 import sys
+import threading
 from argparse import Namespace
 from types import SimpleNamespace
 from typing import ClassVar
@@ -63,6 +65,27 @@ def test_ctrl_c_after_the_drive_does_not_lose_its_report(tmp_path, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         live.run_live(drive)
     assert [report["outcome"] for report in drive.reports] == ["passed"]
+
+
+def test_a_long_end_of_an_interrupted_drive_is_said_once(tmp_path, monkeypatch):
+    said, told = [], threading.Event()
+    drive = FakeDrive(tmp_path)
+
+    class Slow(Ending):
+        def __exit__(self, *_):
+            assert told.wait(60)
+
+    def say(line):
+        said.append(line)
+        told.set()
+
+    monkeypatch.setattr(live, "Session", Slow)
+    monkeypatch.setattr(live, "PATIENCE", 0.0)
+    monkeypatch.setattr(drive, "watch", lambda _: os.kill(os.getpid(), signal.SIGINT))
+    monkeypatch.setattr(drive.progress, "say", lambda line: said or "ending" not in line
+                        or say(line))
+    assert run_program("drive", lambda: live.run_live(drive)) == 130
+    assert said == ["the drive is ending, and its files are being written"]
 
 
 CUT_OFF = """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import threading
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -44,6 +45,7 @@ class Outcome(NamedTuple):
 # s, wall; an emulated ARM processor takes minutes to start, and seconds for its first image
 STARTUP_TIMEOUT, STUCK_TIMEOUT = 300.0, 60.0
 EARLIER = "earlier"  # a folder in `out`
+PATIENCE = 3.0  # s, wall, after which a drive that ends early says that it still ends
 
 
 class LiveDrive(ABC):
@@ -142,6 +144,9 @@ def run_live(drive: LiveDrive) -> int:
 
 def _run(drive: LiveDrive) -> int:
     early, outcome = None, Outcome("ended early", "interrupted")
+    still = threading.Timer(PATIENCE, drive.progress.say, (
+        "the drive is ending, and its files are being written",))
+    still.daemon = True
     try:
         with Session(drive.out) as session:
             launched = session.launched(drive.vehicle, drive.driver,
@@ -160,6 +165,7 @@ def _run(drive: LiveDrive) -> int:
                 outcome = drive.watch(launched)
             except (KeyboardInterrupt, RunError) as ended:
                 early, outcome = ended, Outcome("ended early", str(ended) or "interrupted")
+                still.start()
             if drive.film is not None:
                 drive.film.stop()
             session.family.spared = drive.film.process_id if drive.film else None
@@ -173,6 +179,7 @@ def _run(drive: LiveDrive) -> int:
     finally:
         with interruptible():
             _finish_film(drive, found)
+        still.cancel()
     if early is not None:
         raise early
     for fault in filter(None, outcome.faults):

@@ -22,6 +22,19 @@ except KeyboardInterrupt:
     input()
     print("clean", flush=True)
 """
+INNER = """
+import atexit
+from node_basics.ending import interruptible
+atexit.register(input)
+try:
+    with interruptible():
+        print("ready", flush=True)
+        input()
+except KeyboardInterrupt:
+    with interruptible():
+        pass
+    print("cleanup", flush=True)
+"""
 ASKED = """
 import os, sys, threading, time
 from node_basics.ending import at_signals
@@ -82,6 +95,16 @@ def test_two_signals_at_once_are_no_traceback(start):
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGCONT):  # as a shell passes Ctrl-C on
         process.send_signal(number)
     assert process.communicate("\n", LIMIT) == ("cleanup\nclean\n", "")
+
+
+@SIGNALS
+def test_a_second_signal_at_the_very_end_is_quiet(start, number):
+    process = start(INNER)
+    process.send_signal(number)
+    assert process.stdout.readline() == "cleanup\n"
+    process.send_signal(number)
+    assert process.communicate("\n", LIMIT) == ("", "")
+    assert process.returncode == 0
 
 
 @SIGNALS

@@ -23,9 +23,10 @@ if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:  # by nohup: it goes on wi
 def interruptible() -> Iterator[None]:
     """The first of these signals raises KeyboardInterrupt; later ones do not disturb the cleanup.
 
-    Used again within it, the inner block can be interrupted once more. For a program that does one
-    thing after another.
+    Used again within it, the inner block can be interrupted once more. After a block that ends by
+    itself they do what they did before it. For a program that does one thing after another.
     """
+    before = {number: signal.getsignal(number) for number in SIGNALS}
 
     def interrupt(_number: int, _frame: object) -> None:
         for number in SIGNALS:  # not SIG_IGN: Python writes a traceback if one has just come
@@ -35,6 +36,8 @@ def interruptible() -> Iterator[None]:
     for number in SIGNALS:
         signal.signal(number, interrupt)
     yield
+    for number in SIGNALS:
+        signal.signal(number, before[number])
 
 
 def drop_unread_output() -> bool:
