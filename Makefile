@@ -28,7 +28,7 @@ undecided := $(strip $(foreach name,$(switches),$(if $(filter-out 0 1 no yes fal
 $(if $(undecided),$(error $(shell scripts/help.sh --no-switch $(undecided))))
 numbers := CROSSINGS DURATION GOALS HOURS JOBS KIDNAPS LAPS MEMORY_S MINUTES PACE REPEATS ROUNDS SAMPLE SEED SEEDS STARTS TRACKS WORKERS YARDS
 numbers := $(foreach name,$(numbers),$(if $(findstring $$($(name)),$(rules)),$(if $($(name)),$(call quoted,$(name)=$($(name))))))
-wrong := $(if $(strip $(numbers)),$(shell scripts/help.sh --no-number $(numbers)))
+wrong := $(if $(strip $(numbers)),$(shell scripts/help.sh --no-number "$(MAKECMDGOALS)" $(numbers)))
 $(if $(wrong),$(error $(wrong)))
 endif
 endif

@@ -5,7 +5,8 @@
 #   scripts/help.sh --no-command WORD          says that make has no such command, and which is meant
 #   scripts/help.sh --no-option COMMAND WORD...   the same of an option
 #   scripts/help.sh --no-switch NAME=...       says what these options may be
-#   scripts/help.sh --no-number NAME=VALUE...  the same of the first that is no number, if any; all four for the Makefile
+#   scripts/help.sh --no-number COMMAND NAME=VALUE...  the same of the first that is no number, or 0 where that cannot
+#                                                      be, if any; all four for the Makefile
 on_any_linux=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -38,12 +39,15 @@ case "${1:-}" in
     say $"make $verb has no option $names;""$(meant "${3%=}" "${options[@]}")"$" \`make\` alone lists the options of each command" ;;
   --no-switch) names=${*:2}; say $"$names: write 1 or 0, or leave it out" ;;
   --no-number)
-    for given in "${@:2}"; do
+    for given in "${@:3}"; do
       case $given in
         DURATION=* | HOURS=* | MEMORY_S=* | MINUTES=* | PACE=*)
           [[ $given =~ ^[A-Z_]+=[0-9]+(\.[0-9]+)?$ ]] || { say $"$given: write a number, such as 2 or 0.5, or leave it out"; break; } ;;
         *) [[ $given =~ ^[A-Z_]+=[0-9]+$ ]] || { say $"$given: write a whole number, or leave it out"; break; } ;;
       esac
+      if [[ $given =~ =[0.]+$ && "$2 $given" =~ \ (DURATION|GOALS|LAPS|PACE|WORKERS)=|^(avoid|autorace)\ SEEDS= ]]; then
+        say $"$given: write a number above 0, or leave it out"; break
+      fi
     done ;;
   *)
     version=$(our_version)

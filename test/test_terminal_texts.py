@@ -111,6 +111,9 @@ def test_the_scripts_follow_the_locale(environment: dict[str, str], word: str) -
     ("lane FAST=' PEOPLE=`", "FAST= PEOPLE=: write 1 or 0, or leave it out", "请写 1 或 0"),
     ("course SEED=\"x", 'SEED="x: write a whole number, or leave it out', "请写整数"),
     ("navigate PACE=-1", "PACE=-1: write a number, such as 2 or 0.5", "请写数字"),
+    ("course LAPS=0", "LAPS=0: write a number above 0, or leave it out", "请写大于 0 的数"),
+    ("race DURATION=0.0", "DURATION=0.0: write a number above 0", "请写大于 0 的数"),
+    ("autorace SEEDS=0", "SEEDS=0: write a number above 0", "请写大于 0 的数"),
     ("avoid WORKERS='", "WORKERS=': write a whole number", "请写整数"),
     ("mark WORKER=2", "mark has no option WORKER=; is WORKERS meant?", "是不是想输入 WORKERS？"),
     ("zzz", "make has no command zzz; `make` alone lists them", "单独输入 `make` 会列出所有命令")])
