@@ -5,7 +5,8 @@
 #                   [--seed N]
 #
 # --empty: nobody crosses; writes out/lane_empty/. NAME: a module in lane_keeping's methods/.
-# Exit code 0: all laps were completed; 1: the car left the lane or stalled; 2: it could not run.
+# Exit code 0: all laps were completed, or with --duration and no --laps it drove that long; 1: the car left
+# the lane, stalled or ran out of time; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 course=lane methods=$root/src/lessons/lane_keeping/src/lane_keeping/methods

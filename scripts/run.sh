@@ -3,7 +3,8 @@
 # to it would be text on Windows, where Docker Desktop mounts this folder from.) `scripts/NAME.sh --help` lists its options;
 # what it makes is in out/NAME/. NAME.sh and its exit code 0:
 #
-#   course               drives the line course (--fast: in lockstep with the follower): all laps were completed
+#   course               drives the line course (--fast: in lockstep with the follower): all laps were completed, or with a
+#                        duration and no laps it drove that long
 #   navigate             maps a house and drives to goals: all reached without contact, map and pose within their limits
 #   track                follows the red cylinder: it was reached and its distance kept
 #   avoid                drives by laser through halls with columns: all goals reached without contact

@@ -142,7 +142,7 @@ def fast_runs(tmp_path_factory) -> list[tuple[Run, dict]]:
         out = tmp_path_factory.mktemp(name) / "course"
         runs.append(Run(out, *FILMED, "--fast", "--duration", str(FAST_S), "--seed", "2"))
     try:
-        assert [run.wait() for run in runs] == [1, 1], runs[0].output + runs[1].output  # no lap yet
+        assert [run.wait() for run in runs] == [0, 0], runs[0].output + runs[1].output
     finally:
         for run in runs:
             run.process.kill()
@@ -163,12 +163,13 @@ def test_fast_runs_are_equal_to_the_last_figure(fast_runs):
     assert report == other
     assert report["frames_sent"] == 30 * FAST_S + 2 and report["frames_dropped"] == 0
     assert report["fast"] and report["seed"] == 2
+    assert f"{FAST_S} simulated s are over: lap 1 was " in fast_runs[0][0].output
     assert len(report["drive_sha256"]) == 64
 
 
 def test_a_drive_is_filmed_and_the_report_shows_followers_side_by_side(fast_runs):
-    run = Run(fast_runs[0][0].out, *FILMED, "--duration", "6", "--launch-arg", "factor:=2",
-              "--follower", "06follower_pid.py")
+    run = Run(fast_runs[0][0].out, *FILMED, "--laps", "1", "--duration", "6", "--launch-arg",
+              "factor:=2", "--follower", "06follower_pid.py")
     assert run.wait() == 1, run.output
     report = json.loads((run.out / "report.json").read_text())
     assert list(report["followers"]) == ["05follower_proporation.py", "06follower_pid.py"]
@@ -184,7 +185,7 @@ def test_another_seed_is_another_drive_and_the_launch_file_is_told_all(fast_runs
     before, other = fast_runs[1]
     run = Run(before.out, *FAKE, "--fast", "--camera", "64x48", "--seed", "7",
               "--duration", str(FAST_S))
-    assert run.wait() == 1, run.output
+    assert run.wait() == 0, run.output
     assert report_of(run)["drive_sha256"] != other["drive_sha256"]
     assert not (run.out / "run.mp4").exists()
     log = (run.out / "log" / "roslaunch.log").read_text()
@@ -202,7 +203,7 @@ def test_another_seed_is_another_drive_and_the_launch_file_is_told_all(fast_runs
 def test_time_begins_when_all_are_connected_and_the_last_image_is_waited_for(start):
     run = start(*FAKE, "--fast", "--duration", "5", "--launch-arg", "behaviour:=late_delays",
                 "--launch-arg", "after:=0.752")
-    assert run.wait() == 1, run.output
+    assert run.wait() == 0, run.output
     report = json.loads((run.out / "report.json").read_text())
     assert report["frames_sent"] == 152 and report["frames_dropped"] == 0
     assert "without a command" not in run.output
@@ -210,7 +211,7 @@ def test_time_begins_when_all_are_connected_and_the_last_image_is_waited_for(sta
 
 def test_a_fast_follower_that_does_not_answer_is_told(start):
     run = start(*FAKE, "--fast", "--duration", "2", "--launch-arg", "behaviour:=mute")
-    assert run.wait() == 1, run.output
+    assert run.wait() == 0, run.output
     report = json.loads((run.out / "report.json").read_text())
     assert 0 < report["frames_dropped"] < report["frames_sent"]
     assert f"{report['frames_dropped']} images without a command" in run.output

@@ -25,7 +25,7 @@ def test_people_walk_while_the_car_keeps_its_lane(tmp_path):
          "--startup-timeout", "120"],
         capture_output=True, text=True, timeout=LIMIT,
     )
-    assert done.returncode == 1 and "simulated s are over" in done.stderr, done.stdout + done.stderr
+    assert done.returncode == 0 and "simulated s are over" in done.stdout, done.stdout + done.stderr
     report = json.loads((out / "report.json").read_text())
     assert report["frames_dropped"] == 0 and report["max_lateral_m"] < 0.1
     recording = read_recording(poses)

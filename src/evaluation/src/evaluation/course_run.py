@@ -177,7 +177,7 @@ class CourseRun(CarDrive):
 
     program = "course_run"
     does = "Drive a follower round the course without a screen, score it, write a report."
-    ends = "0 laps closed, 1 left the course or stalled"
+    ends = "0 laps closed, or --duration without --laps was driven, 1 left the course or stalled"
     usual_out = "out/ and the course's name"
     writes = ("path.png", "run.mp4", RUN_PAGE, "report.json")
 
@@ -187,6 +187,7 @@ class CourseRun(CarDrive):
         add("--course", default="course", type=load_course, metavar="NAME",
             help="course, race or lane, or a file (course)")
         parser.add_whole("--laps", 1, "laps to close", least=1)
+        parser.set_defaults(laps=None)  # whether it was given decides what --duration is
         add("--duration", metavar="S", help="simulated seconds at most (300 a lap)", type=partial(
             number, "--duration (DURATION=)", least=0.001, most=MOST_SECONDS,
             what="seconds of simulated time"))
@@ -209,6 +210,8 @@ class CourseRun(CarDrive):
     def check(cls, options: argparse.Namespace) -> argparse.Namespace:
         """Fill options that were not given from the course file."""
         course = options.course
+        options.timed = options.duration is not None and options.laps is None
+        options.laps = options.laps or 1
         options.duration = options.duration or 300.0 * options.laps
         options.follower = options.follower or course.follower
         if not options.launch or tuple(options.launch) == course.launch:
@@ -242,8 +245,9 @@ class CourseRun(CarDrive):
 
     def outcome(self) -> Outcome:
         drive = self.drive
+        asked = {Verdict.CLOSED, Verdict.LATE} if self.options.timed else {Verdict.CLOSED}
         return Outcome(drive.verdict.value, drive.why,
-                       () if drive.verdict is Verdict.CLOSED else (drive.why,))
+                       () if drive.verdict in asked else (drive.why,))
 
     def line(self) -> str:
         drive = self.drive
@@ -275,6 +279,8 @@ class CourseRun(CarDrive):
                                *_titles(self.driver, report))
         write_png(self.out / "path.png", picture)
         found = [followers_table(write_report(self.out, self.driver, report), self.driver)]
+        if self.options.timed and report["outcome"] == Verdict.LATE.value:
+            found.append(report["why"])
         if self.options.fast and report["frames_dropped"]:
             found.append(f"{report['frames_dropped']} images without a command:"
                          " no run will repeat this one")
