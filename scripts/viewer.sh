@@ -6,6 +6,8 @@ failure_code=2
 trap 'exit 0' INT  # Ctrl-C is how it is meant to end: make has nothing to report
 here=$(dirname "${BASH_SOURCE[0]}")  # a command of its own, after which Ctrl-C counts
 . "$here/common.sh"
+# Begun in the background of a script, a shell ignores Ctrl-C and cannot trap it; what it starts does not ignore it.
+[[ $(trap -p INT) == *exit* ]] || exec env --default-signal=INT bash "$0" "$@"
 for word in "$@"; do
   if [[ $word == port:=* ]] && ! [[ ${word#port:=} =~ ^[1-9][0-9]{0,4}$ && ${word#port:=} -le 65535 ]]; then
     fail $"port is ${word#port:=}; give one from 1 to 65535, such as PORT=8080"

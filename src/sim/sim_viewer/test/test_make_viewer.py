@@ -285,6 +285,18 @@ def test_a_port_that_is_none_is_told_of_before_setup(port, tmp_path):
     assert done.stderr == f"viewer: port is {port}; give one from 1 to 65535, such as PORT=8080\n"
 
 
+def test_begun_in_the_background_of_a_script_it_heeds_ctrl_c_too(tmp_path):
+    setup = tmp_path / "scripts/setup.sh"
+    setup.parent.mkdir()
+    for name in ("viewer.sh", "common.sh"):
+        (setup.parent / name).write_bytes((ROOT / "scripts" / name).read_bytes())
+    setup.write_text("#!/bin/sh\nkill -INT $PPID; exit 1\n", encoding="ascii")
+    setup.chmod(0o755)
+    done = subprocess.run(["bash", setup.parent / "viewer.sh"], check=False, timeout=LIMIT,
+                          preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN))
+    assert done.returncode == 0
+
+
 def test_a_named_master_is_kept(somebody_elses_master):
     there = f"http://{socket.gethostname()}:11399"  # asks nobody outside this machine
     assert master_chosen(ROS_MASTER_URI=there) == ([there, "", ""], "")  # reached by its own name
