@@ -108,7 +108,8 @@ def test_gazebo_typed_is_roslaunch_with_the_world_and_the_page(start, tmp_path):
 
 
 @pytest.mark.parametrize(("world", "reason"), [
-    ("nothere.world", "not found (searched: "), ("broken.world", "is not well-formed XML: ")])
+    ("nothere.world", "nothere.world not found (searched: "),
+    ("broken.world", "Could not open file broken.world: ")])
 def test_a_world_that_cannot_be_read_ends_it_without_a_master(tmp_path, world, reason):
     (tmp_path / "broken.world").write_text("<sdf><world")
     for name in ("gazebo", "gzserver"):
@@ -117,8 +118,7 @@ def test_a_world_that_cannot_be_read_ends_it_without_a_master(tmp_path, world, r
             env=os.environ | {"ROS_MASTER_URI": "http://127.0.0.1:9"}, capture_output=True,
             check=False)
         assert (done.returncode, done.stdout) == (1, "")
-        assert done.stderr.startswith(f"[FATAL] Could not open file {world}: ")
-        assert reason in done.stderr
+        assert done.stderr.startswith(f"[FATAL] {reason}")
         assert done.stderr.count("\n") == 1
 
 

@@ -20,7 +20,8 @@ from nav_nodes.messages import grid_message
 
 AMCL, SLAM, MOVE_BASE = NODES = ("/amcl", "/slam_gmapping", "/move_base")
 TICK = 0.02  # s
-CLOCK = r"simulated clock /clock for \d+ s: nobody publishes it; start the simulator"
+CLOCK = r"simulated clock /clock for \d+ s: nobody publishes it; start the simulator " \
+    "in another terminal, for nav_demo with roslaunch urdf02_gazebo demo02_obstacles.launch"
 ODOMETRY = r"transform from odom to base_footprint for \d+ s: nothing publishes it"
 LASER = r"transform from base_footprint to base_scan for \d+ s: nothing publishes it"
 LATE = r"new transform from odom to base_footprint for \d+ s: the newest is \d\.\d s old"

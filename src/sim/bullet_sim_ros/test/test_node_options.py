@@ -132,5 +132,4 @@ def test_a_world_that_is_not_there_is_a_fatal_line_and_the_exit_code(monkeypatch
     engine, record = caplog.records
     assert verbose == [True] and "no physics engine 'newton'" in engine.getMessage()
     assert record.levelno == logging.CRITICAL
-    assert record.getMessage().startswith(
-        "Could not open file worlds/nowhere.world: worlds/nowhere.world not found (searched: ")
+    assert record.getMessage().startswith("worlds/nowhere.world not found (searched: ")

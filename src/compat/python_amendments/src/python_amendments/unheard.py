@@ -33,7 +33,7 @@ def amend_publishers(topics):
     def look(publisher):
         # What does not come is told instead, by a program that drives by what it sees.
         waits = any(each.type in SEEN and not each.has_connections()
-                    for each in topics.get_topic_manager().subs.values())
+                    for each in list(topics.get_topic_manager().subs.values()))
         if not (waits or publisher.closed or publisher.has_connections() or says_it_itself()):
             tell_of_unheard(publisher.resolved_name, publisher.type)
 

@@ -25,7 +25,7 @@ from bullet_sim_ros import loop, names, topic_faults
 from bullet_sim_ros.lockstep import split
 from bullet_sim_ros.metrics import MetricsTopic
 from bullet_sim_ros.only_simulator import register
-from bullet_sim_ros.package_paths import open_resources, unreadable_world
+from bullet_sim_ros.package_paths import open_resources, unreadable_world, why_unopened
 from bullet_sim_ros.params import NodeParameters, read_node_parameters
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.recording import Recording
@@ -138,7 +138,7 @@ def start(options: argparse.Namespace) -> Simulation | None:
     try:
         world = open_world(options, resources)
     except SimulationError as error:
-        rospy.logfatal("Could not open file %s: %s", options.world, error)
+        rospy.logfatal("%s", why_unopened(options.world, error))
         return None
     parameters = read_node_parameters()
     for name, topics in ((names.LOCKSTEP, parameters.lockstep),

@@ -83,8 +83,14 @@ def unreadable_world(name: str) -> str:
     try:
         read_xml_file(open_resources().find_world(name))
     except SimulationError as error:
-        return f"Could not open file {name}: {error}"
+        return why_unopened(name, error)
     return ""
+
+
+def why_unopened(name: str, error: SimulationError) -> str:
+    """A line about a world's file, with its name once."""
+    is_missing = isinstance(error, ResourceNotFound) and error.uri == name
+    return str(error) if is_missing else f"Could not open file {name}: {error}"
 
 
 def _exports(packages: dict[str, Package], attribute: str) -> list[Path]:
