@@ -258,6 +258,14 @@ def test_a_workspace_that_is_none(tmp_path, capsys, made, words):
     assert said.startswith("deps: ") and words in said and said.count("\n") == 1
 
 
+def test_deps_names_the_folder_without_packages_and_the_usual_one(tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / "catkin_ws/src").mkdir(parents=True)
+    for source, advice in ((tmp_path, "for those"), (tmp_path / "catkin_ws/src", "setup sees")):
+        command._install([], 0, False, source)
+        assert f"{source}: no package of your own is in it; {advice}" in capsys.readouterr().out
+
+
 def test_deps_says_what_it_would_install_and_what_nobody_has(tmp_path, capsys, bare):
     source = turtlebot3_style(tmp_path)
     add_package(source, "arm", "moveit_core", "moveit_core")
