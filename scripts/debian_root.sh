@@ -3,7 +3,7 @@
 # folders, with the same network and screen.
 #
 #   scripts/debian_root.sh SCRIPT [ARGUMENT...]   runs scripts/SCRIPT in it; makes it first if it is missing
-#   scripts/debian_root.sh --remove               removes it, and what it put into /usr/local and /etc
+#   scripts/debian_root.sh --remove               removes it, and its rule in /etc/sudoers.d
 #   sudo scripts/debian_root.sh --make USER FOLDER...   makes it for this user; FOLDERs are the machine's own in there, too
 #
 # MIRROR= is the archive that Debian's packages come from; without it debootstrap's own choice.

@@ -190,7 +190,11 @@ def test_who_enters_is_the_user_in_the_same_folders(tmp_path):
     for folder in (tmp_path, *tmp_path.parents):
         folder.chmod(folder.stat().st_mode | 0o055) if folder.owner() == "root" and \
             folder.is_relative_to("/tmp/pytest-of-root") else None
-    (tmp_path / "folders").write_text(f"{mine}\n")
+    # Root's part follows no link: neither this user's, nor that of the Debian to its time zone.
+    (tmp_path / "folders").write_text(f"{mine}\n{mine}/inner\n")
+    (mine / "inner").symlink_to("../" * (len(mine.parts) - 1) + "etc")
+    (debian / "etc/in-there").touch()
+    (debian / "etc/localtime").symlink_to(tmp_path / "zone")
     enter = tmp_path / "enter"
     shutil.copy(ROOT / "scripts/setup/enter_debian.sh", enter)
     environment = mine / "environment"
@@ -198,7 +202,8 @@ def test_who_enters_is_the_user_in_the_same_folders(tmp_path):
     os.chown(environment, 65534, 65534)
     os.chown(mine, 65534, 65534)
     done = subprocess.run(
-        [enter, mine, environment, "bash", "-c", 'id -u; pwd; cat file; echo "$GREETING"; exit 7'],
+        [enter, mine, environment, "bash", "-c",
+         'id -u; pwd; cat file; echo "$GREETING"; [ -e /etc/in-there ] && exit 7'],
         env={"SUDO_UID": "65534"}, text=True, capture_output=True, timeout=60, check=False)
     assert done.stdout.splitlines() == ["65534", str(mine), "the machine's own", "good day"], \
         done.stderr
@@ -206,6 +211,12 @@ def test_who_enters_is_the_user_in_the_same_folders(tmp_path):
     assert not os.path.ismount(debian / str(mine)[1:])
     assert ":/bin/bash\n" in (debian / "etc/passwd").read_text()
     assert "old" not in (debian / "etc/passwd").read_text()
+    assert not (tmp_path / "zone").exists()
+    seen = subprocess.run(
+        ["unshare", "--mount", "bash", "-c", '"$@"; grep -c "$0" /proc/self/mounts', debian,
+         enter, "mounted", mine, environment, "true"],
+        env={"SUDO_UID": "65534"}, text=True, capture_output=True, timeout=60, check=False)
+    assert seen.stdout == "0\n"  # whatever its words, its mounts are its own
     refused = subprocess.run([enter, "/", "x", "true"], env={}, text=True, capture_output=True,
                              check=False)
     assert refused.returncode == 2 and "by sudo" in refused.stderr
