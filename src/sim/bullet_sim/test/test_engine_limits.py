@@ -178,6 +178,15 @@ def test_a_crowd_is_left_out_of_a_world_with_one_line(caplog):
     world.close()
 
 
+def test_what_is_gone_does_not_crowd(world):
+    hand = "".join(f'<link name="{n}">{BOX}</link>' for n in range(10))
+    world.spawn(read(f'<model name="hand">{hand}</model>'))
+    for _ in range(250):  # each lies in all ten
+        world.spawn(read(f'<model name="held"><link name="a">{BOX}</link></model>'))
+        world.delete("held")
+    assert world._client.crowding._overlaps == 0
+
+
 def test_flat_plates_turn_however_they_lie():
     """Of moments just beyond the triangle rule the engine takes none; rounding makes such ones."""
     random, world = np.random.default_rng(0), World(WorldDescription(gravity=(0.0, 0.0, 0.0)))

@@ -4,7 +4,7 @@ The engine's time for a step grows by the square of the contacts when there are 
 before: 60 boxes in one place take 5 s, 120 of them a minute and a half.
 """
 
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 
 from bullet_sim.description import ModelDescription, Plane
@@ -31,9 +31,9 @@ class Crowding:
     def __init__(self, read: Callable):
         self._read = read
         self._movable: dict[Shape, bool] = {}  # of shapes that can touch
-        self._others: Counter[Shape] = Counter()  # in which a movable shape lay
-        self._apart: dict[Shape, float] = {}  # the same of what cannot touch
-        self._overlaps = 0.0  # beyond the usual ones
+        self._met: dict[Shape, set[Shape]] = defaultdict(set)  # shapes, by one they overlapped
+        self._apart: dict[Shape, float] = {}  # the same of what cannot touch, by its time
+        self._overlaps = 0.0  # of movable shapes, beyond the usual ones
 
     def put(self, model: ModelDescription, bodies: Iterable) -> None:
         """A model was added, as these bodies. Crowded if it lies in too many others."""
@@ -67,11 +67,18 @@ class Crowding:
         touched = [other for other in others if other in self._movable
                    and (self._movable[other] or not static)]
         self._count_apart(shape, len(others) - len(touched))
-        for pair in ((shape, other) for other in touched):
-            for each in pair:
-                if self._movable[each]:
-                    self._others[each] += 1
-                    self._overlaps += self._others[each] > USUAL
+        for other in touched:
+            self._pair(shape, other, set.add)
+
+    def _pair(self, one: Shape, other: Shape, change: Callable[[set[Shape], Shape], None]) -> None:
+        """Add each to what the other met, or take it from there."""
+        for each, met in ((one, other), (other, one)):
+            self._overlaps -= self._beyond(each)
+            change(self._met[each], met)
+            self._overlaps += self._beyond(each)
+
+    def _beyond(self, shape: Shape) -> int:
+        return max(len(self._met[shape]) - USUAL, 0) if self._movable[shape] else 0
 
     def _count_apart(self, shape: Shape, others: int) -> None:
         self._apart[shape] = APART * others
@@ -87,6 +94,8 @@ class Crowding:
         """A body of so many links was unloaded."""
         for index in range(-1, links - 1):
             shape = number, index
+            for other in tuple(self._met[shape]):
+                self._pair(shape, other, set.discard)
+            del self._met[shape]
             self._movable.pop(shape, None)
             self._overlaps -= self._apart.pop(shape, 0.0)
-            self._overlaps -= max(self._others.pop(shape, 0) - USUAL, 0)
