@@ -36,7 +36,10 @@ def read_parameters():
     given = rospy.get_param("~", {})
     if given:
         rospy.delete_param("~")  # they are for one run  只对这一次运行有效
-    given = given.pop("file", {}).get("visual_tracker", {}) | given
+    try:
+        given = given.pop("file", {}).get("visual_tracker", {}) | given
+    except (AttributeError, TypeError):  # a single value in place of all of them  不是一组参数
+        given = {"~": given}
     wrong = [name for name in given if name not in PAGE or type(given[name]) not in (int, float)]
     if wrong:
         rospy.logfatal("unknown parameter, or no number: '%s'; known: %s", wrong[0], [*PAGE])

@@ -116,6 +116,11 @@ class TrackersStory(unittest.TestCase):
             self.assertIn(names, said)
             self.assertFalse(rospy.has_param("/mistyped/kp_trun"), "it would stay for the next run")
             self.assertNotIn("Traceback", said)
+        for one in ("", "/file", "/file/visual_tracker"):
+            rospy.set_param(f"/mistyped{one}", 5)
+            said, _ = start("visual_tracker.py", "__name:=mistyped").communicate(timeout=LIMIT)
+            self.assertIn("unknown parameter, or no number: '~'", said)
+            self.assertNotIn("Traceback", said)
 
 
 if __name__ == "__main__":
