@@ -7,7 +7,10 @@
 #   sudo scripts/debian_root.sh --make USER FOLDER...   makes it for this user; FOLDERs are the machine's own in there, too
 #
 # MIRROR= is the archive that Debian's packages come from; without it debootstrap's own choice.
-environment=$(umask 077; mktemp) && env -0 > "$environment" || exit 2  # before common.sh changes it
+environment=
+if [[ ${1:-} != --* ]]; then  # before common.sh changes it, and where that Debian finds it
+  environment=$(umask 077; mktemp /tmp/environment.XXXXXX) && env -0 > "$environment" || exit 2
+fi
 trap 'rm -f "$environment"' EXIT
 on_any_linux=yes stays_root=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"

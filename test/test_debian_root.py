@@ -32,6 +32,7 @@ class Machine:
                              ("PATH=/usr/local/sbin", f"PATH={self.programs}:/usr/local/sbin"),
                              ("/var/lib/ros1-driving-courses", str(self.place)),
                              ("rule=/etc/sudoers.d/", f"rule={folder}/sudoers-"),
+                             ("mktemp /tmp/", f"mktemp {folder}/"),
                              ("/usr/share/keyrings", str(folder))):
                 text = text.replace(old, new)
             script.write_text(text)
@@ -88,6 +89,7 @@ def test_elsewhere_a_debian_is_made_once_and_the_script_runs_in_it(tmp_path, os_
         "deb http://archive bookworm main\ndeb http://archive bookworm-updates main\n")
     again = machine.run("course.sh", "--laps", "2 3", GREETING="good day")
     assert (again.returncode, again.stdout) == (0, entered)
+    assert not list(tmp_path.glob("environment.*"))
 
 
 def test_the_rule_lets_this_user_enter_without_a_password_and_do_nothing_else(tmp_path):
@@ -135,7 +137,7 @@ def test_what_fails_is_said_and_the_next_call_goes_on(tmp_path, program, text, s
     done = machine.run("course.sh")
     assert done.returncode != 0 and said in done.stderr.splitlines()[-1]
     assert not (machine.place / "complete").exists()
-    assert not list(Path(os.environ.get("TMPDIR", "/tmp")).glob(f"{machine.folder.name}*"))
+    assert not list(tmp_path.glob("environment.*"))
     (machine.programs / program).unlink()
     if kept:
         machine.program(program, kept)
