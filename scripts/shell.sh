@@ -4,4 +4,4 @@
 "$root/scripts/setup.sh" || exit 2
 [ -z "${given_master[0]}" ] || export ROS_MASTER_URI=${given_master[0]}
 export PATH=$PATH:/usr/games
-bash --rcfile <(printf '%s\n' '[ ! -f ~/.bashrc ] || . ~/.bashrc' ". $root/devel/setup.bash" 'PS1="(courses) ${PS1:-\$ }"') || exit 0  # the last command's code is nothing that make has to report
+bash --rcfile <(printf '%s\n' '[ ! -f ~/.bashrc ] || . ~/.bashrc' ". $root/devel/setup.bash" 'PS1="(courses) ${PS1:-\$ }"') || exit 0  # make has nothing to report

@@ -170,6 +170,18 @@ def test_it_is_removed_by_one_command(tmp_path):
     assert machine.run("debian_root.sh", "--remove").stdout == "There is no Debian to remove.\n"
 
 
+def test_a_terminal_has_the_workspace_and_ends_quietly_after_a_command_that_failed():
+    environment = {name: value for name, value in os.environ.items()
+                   if not name.startswith(("ROS_", "MAKE", "PYTHON", "CMAKE_"))}
+    done = subprocess.run(
+        ["script", "-qec", "make -s shell", "/dev/null"], cwd=ROOT, text=True, timeout=120,
+        input="rospack find learning_topic\nfalse\nexit\n", capture_output=True, check=False,
+        env=environment | {"LANGUAGE": "en", "TERM": "dumb"})
+    assert done.returncode == 0, done.stdout
+    assert f"\n{ROOT}/src/learning_topic" in done.stdout.replace("\r", "")
+    assert "***" not in done.stdout
+
+
 @pytest.mark.skipif(os.getuid() != 0, reason="root alone may mount and change its root folder")
 def test_who_enters_is_the_user_in_the_same_folders(tmp_path):
     debian = tmp_path / "debian"
