@@ -76,7 +76,7 @@ make_debian() {
   line=ALL
   [ "$passwordless" != yes ] || line="NOPASSWD: ALL"
   add_rules "$debian/etc/sudoers.d/ros1-driving-courses" "$user ALL=(ALL) $line"
-  add_rules "$rule" "Defaults!$place/enter !use_pty, !requiretty" "$user ALL=(root) NOPASSWD: $place/enter"
+  add_rules "$rule" "Defaults!$place/enter !use_pty" "$user ALL=(root) NOPASSWD: $place/enter"
   touch "$place/complete"
 }
 # Lines of a sudoers file, beside those of other users.

@@ -123,7 +123,8 @@ def test_a_folder_that_is_not_in_there_yet_is_added(tmp_path):
 
 @pytest.mark.parametrize(("program", "text", "said"), [
     ("debootstrap", "echo 'E: Failed getting release file'; exit 1",
-     "debootstrap could not make a Debian: E: Failed getting release file"),
+     "debootstrap could not make a Debian: E: Failed getting release file "
+     "(full log: var/log/debootstrap.log)"),
     ("df", "printf 'x\\nx x x 100\\n'", "100 MB free, 3300 MB are needed"),
     ("sudo", "echo 'sudo: a password is required' >&2; exit 1", "a password is required"),
     ("uname", "echo riscv64", "needs Linux on a 64-bit Intel, AMD or ARM processor"),

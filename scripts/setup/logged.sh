@@ -18,10 +18,10 @@ logged() {
 
 # fail, with the last error line of a log.
 fail_with_log() {
-  local why
+  local why log=${state#"$root"/}/$2.log
   why=$(awk '/^CMake Error/ && !cmake {cmake = $0; next} cmake && !told && NF {told = $0} /^E:|^ERROR|[Ee]rror:/ {last = $0}
     END {sub(/^ +/, "", told); print cmake ? cmake " " told : last}' "$state/$2.log")
-  fail "$1${why:+: $why} "$"(full log: .setup/$2.log)"
+  fail "$1${why:+: $why} "$"(full log: $log)"
 }
 # The same for a build: the first cause in the build's output.
 fail_with_cause() {

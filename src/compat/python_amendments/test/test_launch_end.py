@@ -179,3 +179,14 @@ def test_only_with_nohup_it_outlives_its_terminal(launched, nohup):
             launched.wait(GOES_ON)
     else:
         launched.wait(LIMIT)
+
+
+def test_a_genpy_that_needs_numpy_gets_it():
+    assert printed("""import sys, types
+from python_amendments import quick_start
+module = types.ModuleType("genpy.message")
+def load(into):
+    import numpy
+    into.number = numpy.float64
+quick_start.load_without(load, module)
+print(module.number.__name__, "numpy" in sys.modules)""") == "float64 True\n"

@@ -49,8 +49,12 @@ def load_without(load, module):
     sys.modules[seldom] = in_place
     try:
         load(module)
-    finally:
+    except ImportError:  # another version needs it
         del sys.modules[seldom]
+        load(module)
+    finally:
+        if seldom in sys.modules and sys.modules[seldom] is in_place:
+            del sys.modules[seldom]
 
 
 def amend_numpy(numpy):
