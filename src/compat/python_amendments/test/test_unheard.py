@@ -13,15 +13,15 @@ SRC = Path(__file__).resolve().parents[3]
 @pytest.mark.parametrize(("name", "kind", "program", "line"), [
     ("/turtle1/cmd_vel", unheard.TWIST, "learning_topic/scripts/velocity_publisher.py",
      "yet. Type in another terminal: rosrun turtlesim turtlesim_node; this"),
-    ("/turtle2/cmd_vel", unheard.TWIST, "turtle2", "yet. If /turtle1/cmd_vel is meant, end this "
-     "program and start it with /turtle2/cmd_vel:=/turtle1/cmd_vel."),
+    ("/turtle2/cmd_vel", unheard.TWIST, "turtle2",
+     "yet. Type in another terminal: rosservice call /spawn 2 2 0 turtle2; this"),
     ("/motor_output", unheard.TWIST, "car_control/scripts/keyboard_control.py",
      "yet. Type in another terminal: roslaunch racecar_description car_control.launch "
      "keyboard:=false; this"),
     ("/cmd_vel", unheard.TWIST, "turtlebot3_teleop/nodes/turtlebot3_teleop_key",
      "yet. Type in another terminal: roslaunch turtlebot3_gazebo turtlebot3_world.launch; this"),
     ("/racecar/left_controller/command", "std_msgs/Float64", "car_control/scripts/motor_control.py",
-     "yet. Type in another terminal: roslaunch racecar_description racecar.launch; this"),
+     "yet. Type in another terminal: roslaunch racecar_description car_control.launch; this"),
     ("/car/cmd_vel", unheard.TWIST, "heard", "")])
 def test_commands_that_nobody_listens_to(said, monkeypatch, name, kind, program, line):
     listened = {"turtle2": ["/turtle1/cmd_vel"], "heard": ["/car/cmd_vel"]}.get(program, [])

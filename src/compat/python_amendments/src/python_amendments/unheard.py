@@ -14,6 +14,7 @@ from python_amendments.waiting import (
 
 TWIST = "geometry_msgs/Twist"
 OF_A_JOINT = "_controller/command"  # the end of a topic's name
+OF_THE_CAR = "roslaunch racecar_description car_control.launch"  # its controllers, too
 UNHEARD = ("Nobody listens to %s yet. Type in another terminal: %s; this program then goes on by "
            "itself.")
 OTHER_LISTENED = ("Nobody listens to %s yet. If %s is meant, end this program and start it with "
@@ -47,11 +48,15 @@ def tell_of_unheard(name, kind):
              and is_turtles(each) == is_turtles(name)]
     if name in listened:
         return
-    if alike:
+    if alike and is_turtles(name):
+        tell_once(UNHEARD, name, f"rosservice call /spawn 2 2 0 {name.split('/')[1]}")
+    elif alike:
         meant = difflib.get_close_matches(name, alike, 1, 0.0)[0]
         tell_once(OTHER_LISTENED, name, meant, name, meant)
     else:
-        tell_once(UNHEARD, name, TURTLESIM if is_turtles(name) else course(name))
+        of_the_car = name.startswith("/racecar/") and name.endswith(OF_A_JOINT)
+        tell_once(UNHEARD, name, TURTLESIM if is_turtles(name) else
+                  OF_THE_CAR if of_the_car else course(name))
 
 
 def is_turtles(topic):

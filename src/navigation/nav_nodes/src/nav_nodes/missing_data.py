@@ -182,5 +182,6 @@ def _why_clock_stands(ticks: rospy.Subscriber) -> str:
     advice = ("its publisher is silent, is the simulation paused?" if is_published(ticks)
               else "nobody publishes it; start the simulator in another terminal, for nav_demo "
               "with roslaunch urdf02_gazebo demo02_obstacles.launch, for TurtleBot3 with "
-              "roslaunch turtlebot3_gazebo turtlebot3_world.launch.")
+              "roslaunch turtlebot3_gazebo turtlebot3_world.launch; then end this launch file and "
+              "type it again.")
     return f"{advice} Without one, set use_sim_time to false where it is set to true"
