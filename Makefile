@@ -1,6 +1,6 @@
 # Every command is a script in scripts/; run a script itself to get its own exit code.
 verbs = setup course race viewer drive lane track avoid navigate autorace mark shell deps build report clean clean-root help \
-  test lint race-trials track-trials lane-trials navigation-trials localisation-trials bench-lanes bench fuzz chaos soak mutants check-releases deb
+  test lint race-trials track-trials lane-trials navigation-trials localisation-trials bench-lanes bench fuzz chaos soak mutants check-releases deb image
 .PHONY: $(verbs)
 .DEFAULT_GOAL = help
 
@@ -154,3 +154,6 @@ check-releases: ### which of our Debian packages another release lacks, and whic
 
 deb: ### build a Debian package of everything, in out/
 	@scripts/deb.sh
+
+image: ### build the image of docker/, and save it in out/, for docker load [SUITE=bookworm]
+	@scripts/image.sh $(if $(SUITE),--suite "$$SUITE")

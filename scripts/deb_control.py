@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gzip
 import hashlib
+import platform
 import subprocess
 import sys
 import time
@@ -73,12 +74,13 @@ def python_range(version: tuple[int, int] = sys.version_info[:2]) -> list[str]:
 
 
 def version(when: int) -> str:
-    """Our version, the commit's time and name: later ones count as newer."""
+    """Our version, the commit's time and name, and Debian's release: later ones count as newer."""
     told = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty=.changed",
                            "--exclude=*"], capture_output=True, text=True, check=False)
     commit = f".{told.stdout.strip()}" if told.returncode == 0 else ""
     minute = time.strftime("%Y%m%d%H%M", time.gmtime(when))
-    return f"{__version__}+{minute}{commit}"
+    release = platform.freedesktop_os_release()["VERSION_ID"]
+    return f"{__version__}+{minute}{commit}+deb{release}"
 
 
 def control(prefix: str, version: str, architecture: str, size_kib: int, packages: str) -> str:

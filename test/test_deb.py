@@ -56,7 +56,7 @@ def test_control_file(deb):
 def test_versions_grow_with_time_and_are_dpkgs(deb):
     earlier, later = deb[0].version(1_000_000_000), deb[0].version(1_000_000_060)
     assert earlier < later and later.startswith(f"{__version__}+")
-    assert re.fullmatch(r"[0-9][A-Za-z0-9.+~]*", later)
+    assert re.fullmatch(r"[0-9][A-Za-z0-9.+~]*\+deb1[23]", later)
 
 
 def test_each_required_package_travels(deb):
