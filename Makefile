@@ -18,7 +18,7 @@ $(if $(strangers),$(error $(shell scripts/help.sh --no-command $(foreach word,$(
 rules := $(shell awk -v RS= '{ for (i = 1; i <= split("$(MAKECMDGOALS)", verb, " "); i++) if ($$1 == verb[i] ":") print }' Makefile)
 rules += $(if $(findstring $$(WHERE),$(rules)),$(value WHERE))
 given := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
-unknown := $(strip $(foreach name,$(given),$(if $(findstring $$($(name)),$(rules)),,$(name))))
+unknown := $(strip $(foreach name,$(filter-out MIRROR,$(given)),$(if $(findstring $$($(name)),$(rules)),,$(name))))
 # As typed: make would take a $ in them for a variable of its own.
 $(foreach name,$(given),$(eval override $(name) := $$(value $(name))))
 export $(given)
@@ -33,7 +33,7 @@ $(if $(wrong),$(error $(wrong)))
 endif
 endif
 
-setup: ## install what is missing, and build [BASHRC=1: and in ~/.bashrc source it in each new terminal]
+setup: ## install what is missing, and build [BASHRC=1: and in ~/.bashrc source it in each new terminal] [MIRROR=cn]
 	@scripts/setup.sh $(if $(filter-out 0 no false,$(BASHRC)),--bashrc)
 
 course: ## drive the line course by camera, and report [LAPS=1] [DURATION=s] [FOLLOWER=06follower_pid.py] [FAST=1] [CAMERA=640x480] [SEED=0]

@@ -6,7 +6,7 @@
 #   scripts/debian_root.sh --remove               removes it, and its rule in /etc/sudoers.d
 #   sudo scripts/debian_root.sh --make USER FOLDER...   makes it for this user; FOLDERs are the machine's own in there, too
 #
-# MIRROR= is the archive that Debian's packages come from; without it debootstrap's own choice.
+# MIRROR= is as for setup.sh; without it debootstrap chooses.
 environment=
 if [[ ${1:-} != --* ]]; then  # before common.sh changes it, and where that Debian finds it
   environment=$(umask 077; mktemp /tmp/environment.XXXXXX) && env -0 > "$environment" || exit 2
@@ -15,6 +15,7 @@ trap 'rm -f "$environment"' EXIT
 on_any_linux=yes stays_root=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 . "$root/scripts/setup/logged.sh"
+. "$root/scripts/setup/mirror.sh"
 self=${1%.sh}
 place=/var/lib/ros1-driving-courses debian=/var/lib/ros1-driving-courses/debian
 rule=/etc/sudoers.d/ros1-driving-courses
@@ -61,10 +62,11 @@ make_debian() {
   if [ ! -e "$place/complete" ]; then
     free=$(df -Pm "$place" | awk 'NR == 2 {print $4}')
     [ "$free" -ge "$disk_mb" ] || fail $"not enough disk space: $place has $free MB free, $disk_mb MB are needed"
+    use_mirror "$state" "$release"
     install_debootstrap
     rm -rf --one-file-system "$new" "$debian"
     doing=$"debootstrap is still running" logged debootstrap debootstrap --variant=minbase --keyring="$keyring" \
-      --include=ca-certificates,git,make,procps,sudo "$release" "$new" ${MIRROR:+"$MIRROR"} ||
+      --include=ca-certificates,git,make,procps,sudo "$release" "$new" ${archive:+"$archive"} ||
       { rm -rf --one-file-system "$new"; fail_with_log $"debootstrap could not make a Debian" debootstrap; }
     sed -i "s/\(.*\) $release main/&\n\1 $release-updates main/" "$new/etc/apt/sources.list"
     echo $release > "$new/etc/ros1-driving-courses"  # by which setup knows where it is

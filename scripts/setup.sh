@@ -10,6 +10,7 @@
 #   scripts/setup.sh --build         build even if nothing has changed
 #   scripts/setup.sh --dependencies  everything but the build
 #
+# MIRROR=cn, or a Debian archive's address, in the environment: where the packages come from (setup/mirror.sh).
 # dependencies/ lists what is installed, for each release and architecture. Stamps and logs are in .setup/. A stamp is
 # written last, so an interrupted step is done again.
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -36,10 +37,11 @@ for option in "$@"; do
 done
 did=no
 step() { did=yes; say $"Step $1 of 5: $2"; }
-for part in logged machine debian python source_packages workspace; do . "$root/scripts/setup/$part.sh"; done
+for part in logged machine mirror debian python source_packages workspace; do . "$root/scripts/setup/$part.sh"; done
 
 check_machine
 mkdir -p "$state"
+use_mirror "$state" "${platform%-*}"
 exec 9<"$root"  # two setups at once would interfere with each other
 flock -n 9 || { say $"Another setup is running in this folder: waiting for it."; flock 9; }
 mapfile -t missing < <(missing_packages)

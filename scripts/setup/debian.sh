@@ -9,7 +9,7 @@ as_root() {
   for name in http_proxy https_proxy no_proxy; do [ -z "${!name:-}" ] || keep+=("$name=${!name}"); done
   if [ "$(id -u)" = 0 ]; then env "${keep[@]}" "$@"; else sudo env "${keep[@]}" "$@"; fi
 }
-apt() { as_root apt-get -q -y -o DPkg::Lock::Timeout=600 -o Acquire::Retries=2 -o Dpkg::Use-Pty=0 "$@"; }
+apt() { as_root apt-get -q -y -o DPkg::Lock::Timeout=600 -o Acquire::Retries=2 -o Dpkg::Use-Pty=0 "${sources[@]}" "$@"; }
 install_packages() { apt install --no-install-recommends "${missing[@]}"; }
 mend_and_install() { as_root dpkg --configure -a && apt install -f --no-remove && install_packages; }
 debian_packages() {
