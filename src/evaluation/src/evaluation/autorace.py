@@ -26,7 +26,17 @@ from evaluation.autorace_judge import (
     score,
 )
 from evaluation.command_line import Parser, one_of
-from evaluation.picture import CAR, FAINT, LAPS, LINE, WHITE, legend, map_sheet, pixels, write_png
+from evaluation.picture import (
+    CAR,
+    FAINT,
+    LINE,
+    MAP_PX,
+    WHITE,
+    Plan,
+    lap_colour,
+    sheet,
+    write_png,
+)
 from evaluation.report import cell, mean, table
 from evaluation.run_page import RECORDING, begin_recording, write_run_page
 from evaluation.trial import Case, Trial
@@ -246,21 +256,21 @@ def _watch(stack: AutoraceStack, task: Task) -> None:
 def write_sheet(drives: Sequence, path: Path) -> None:
     """Draw every drive's path; that of a failed drive ends in a cross."""
     passed = sum(each.passed for each in drives)
-    figure, axes = map_sheet("AutoRace 2020", f"{passed} of {len(drives)} drives passed",
-                             (-2.1, -2.1), (2.1, 2.1))
+    plan = Plan((-2.1, -2.1), (2.1, 2.1), MAP_PX)
+    plan.grid(0.5)
     for side, colour in (("left", LINE), ("right", WHITE)):
-        axes.plot(*np.array(PLAN["lane"][side]).T, color=colour, linewidth=3)
+        plan.line(PLAN["lane"][side], colour, 4)
     for wall in PLAN["walls"]:
-        (x, y), yaw = wall["middle"], wall["yaw"]
+        middle, yaw = np.array(wall["middle"]), wall["yaw"]
         half = np.array((np.cos(yaw), np.sin(yaw))) * wall["length"] / 2
-        axes.plot((x - half[0], x + half[0]), (y - half[1], y + half[1]), color=FAINT, linewidth=6)
-    axes.plot(*np.array(PLAN["obstacles"]).T, "o", color=FAINT, markersize=20)
-    axes.plot(*np.array(PLAN["barriers"]).T, "s", color=CAR, markersize=8, label="barriers")
-    axes.plot(*np.array(list(BAYS.values())).T, "P", color=WHITE, markersize=12, label="bays")
+        plan.line((middle - half, middle + half), FAINT, 8)
+    for places, colour, radius in ((PLAN["obstacles"], FAINT, 0.045), (
+            PLAN["barriers"], CAR, 0.018), (BAYS.values(), WHITE, 0.025)):
+        for place in places:
+            plan.disc(place, radius, colour)
     for number, drive in enumerate(drives):
-        points = np.array(drive.path)
-        axes.plot(*points.T, color=LAPS[number % len(LAPS)], linewidth=1.2)
+        plan.line(drive.path, lap_colour(number), 2)
         if not drive.passed:
-            axes.plot(*points[-1], "x", color=CAR, markersize=14)
-    legend(axes)
-    write_png(path, pixels(figure))
+            plan.cross(drive.path[-1], CAR)
+    write_png(path, sheet(("AutoRace 2020", f"{passed} of {len(drives)} drives passed"), [plan],
+                          [("barriers", CAR), ("bays", WHITE)]))

@@ -15,7 +15,17 @@ from sensor_msgs.msg import Image
 from evaluation.film import LONGEST_GAP, FilmFile, fit, side_by_side
 from evaluation.house import Records, Watch
 from evaluation.navigate_score import Result
-from evaluation.picture import CAR, FLOOR, TEXT, Plan, bgr, lap_colour, legend, map_sheet, pixels
+from evaluation.picture import (
+    CAR,
+    FLOOR,
+    MAP_PX,
+    TEXT,
+    Plan,
+    bgr,
+    lap_colour,
+    sheet,
+    write_text,
+)
 from nav_algorithms.cells import FREE, OCCUPIED, OccupancyGrid
 from nav_algorithms.poses import compose, transform_points
 from trial_worlds.house import Ground
@@ -39,10 +49,7 @@ class Film(FilmFile):
         super().__init__(path)
         self.title = ""  # what the run is doing now
         self._watch, self._result = watch, result
-        walls = ground.walls
-        low = np.array(walls.origin)
-        high = low + np.array(walls.cells.shape[::-1]) * walls.resolution
-        self._floor = Plan(low - 0.2, high + 0.2, PLAN_PX)
+        self._floor = _floor(ground, PLAN_PX)
         self._view: Image | None = None
         self._records: Records | None = None
         self._number = -1
@@ -94,65 +101,52 @@ class Film(FilmFile):
         return plan.image
 
 
+def _floor(ground: Ground, width_px: int) -> Plan:
+    low = np.array(ground.walls.origin)
+    high = low + np.array(ground.walls.cells.shape[::-1]) * ground.walls.resolution
+    return Plan(low - 0.2, high + 0.2, width_px)
+
+
 def _lay_cells(plan: Plan, grid: OccupancyGrid, grid_in_world: np.ndarray) -> None:
     """Draw the map's cells; unknown ones have the floor's colour."""
     cells = np.full((*grid.cells.shape, 3), bgr(FLOOR), np.uint8)
     cells[(grid.cells >= FREE) & (grid.cells < OCCUPIED_FROM)] = bgr(CLEAR)
     cells[grid.cells >= OCCUPIED_FROM] = bgr(TEXT)
+    plan.image = _laid(plan, cells, grid, grid_in_world, bgr(FLOOR))
+
+
+def _laid(plan: Plan, cells: np.ndarray, grid: OccupancyGrid, grid_in_world: np.ndarray,
+          border: object = 0) -> np.ndarray:
+    """One value or colour for each of the grid's cells, as the plan's pixels."""
     # The middle of pixel (0, 0) of the cells lies half a cell inside the grid.
     corners = np.array([(0.0, 0.0), (100.0, 0.0), (0.0, 100.0)])
     points = (corners + 0.5) * grid.resolution + grid.origin
     there = plan.to_px(transform_points(np.asarray(grid_in_world), points)) - 0.5
     turn = cv2.getAffineTransform(corners.astype(np.float32), there.astype(np.float32))
-    plan.image = cv2.warpAffine(cells, turn, plan.image.shape[1::-1], flags=cv2.INTER_NEAREST,
-                                borderValue=bgr(FLOOR))
+    return cv2.warpAffine(cells, turn, plan.image.shape[1::-1], flags=cv2.INTER_NEAREST,
+                          borderValue=border)
 
 
 def map_picture(ground: Ground, result: Result, title: str, subtitle: str) -> np.ndarray:
     """The picture (rows, 1400, 3), BGR."""
-    walls = ground.walls
-    low = np.array(walls.origin)
-    high = low + np.array(walls.cells.shape[::-1]) * walls.resolution
-    figure, axes = map_sheet(title, subtitle, low - 0.3, high + 0.3)
-    axes.grid(False)
+    plan, walls = _floor(ground, MAP_PX), ground.walls
     if result.map is not None:
-        _draw_cells(axes, result.map, result.map_in_world)
-    x, y = _edges(walls)
-    middle = walls.resolution / 2
-    axes.contour(x[:-1] + middle, y[:-1] + middle, walls.cells == OCCUPIED, levels=[0.5],
-                 colors=[TRUE_WALL], linewidths=1)
-    axes.plot([], [], color=TRUE_WALL, label="true wall")
-    for part, text, colour in PATHS:
-        axes.plot(*result.paths.get(part, np.empty((0, 2))).T, color=colour, linewidth=2,
-                  label=text)
+        _lay_cells(plan, result.map, result.map_in_world)
+    plan.grid(1.0)
+    standing = _laid(plan, (walls.cells == OCCUPIED).astype(np.uint8), walls, np.zeros(3))
+    edges, _ = cv2.findContours(standing, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)
+    cv2.drawContours(plan.image, edges, -1, bgr(TRUE_WALL))
+    for part, _, colour in PATHS:
+        plan.line(result.paths.get(part, ()), colour, 3)
     ways = result.navigation["goals"] if result.navigation else []
     for number, way in enumerate(ways, start=1):
         goal = np.array([way["x"], way["y"], np.radians(way["yaw_deg"])])
         ends = transform_points(goal, np.array([(0.0, 0.0), (0.4, 0.0)]))
-        axes.plot(*ends.T, color=GOAL if way["reached"] else CAR, linewidth=2, marker="o",
-                  markevery=[0], markersize=12, fillstyle="none")
-        axes.annotate(str(number), ends[0], (10, 8), textcoords="offset points", color=TEXT)
-    for colour, text in ((GOAL, "goal"), (CAR, "not reached")):
-        axes.plot([], [], "o", color=colour, fillstyle="none", label=text)
-    legend(axes)
-    return pixels(figure)
-
-
-def _draw_cells(axes: object, grid: OccupancyGrid, grid_in_world: np.ndarray) -> None:
-    """Draw free and occupied cells, transformed into the world's frame."""
-    from matplotlib.colors import ListedColormap
-
-    shade = np.zeros(grid.cells.shape)
-    shade[(grid.cells >= FREE) & (grid.cells < OCCUPIED_FROM)] = 1
-    shade[grid.cells >= OCCUPIED_FROM] = 2
-    corners = np.stack(np.meshgrid(*_edges(grid)), axis=-1)
-    there = transform_points(np.asarray(grid_in_world), corners.reshape(-1, 2))
-    axes.pcolormesh(*there.reshape(corners.shape).transpose(2, 0, 1), shade, vmin=0, vmax=2,
-                    cmap=ListedColormap([FLOOR, CLEAR, TEXT]), rasterized=True)
-
-
-def _edges(grid: OccupancyGrid) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of the cells' borders in the grid's frame, m."""
-    rows, columns = grid.cells.shape
-    return (grid.origin[0] + np.arange(columns + 1) * grid.resolution,
-            grid.origin[1] + np.arange(rows + 1) * grid.resolution)
+        colour = GOAL if way["reached"] else CAR
+        plan.line(ends, colour, 3)
+        plan.disc(ends[0], 8 / plan.px_per_m, colour, thick_px=2)
+        x, y = plan.to_px(ends)[0].astype(int).tolist()
+        write_text(plan.image, str(number), (x + 14, y - 11), 11)
+    return sheet((title, subtitle), [plan], [
+        ("true wall", TRUE_WALL), *((text, colour) for _, text, colour in PATHS), ("goal", GOAL),
+        ("not reached", CAR)])

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import math
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -39,6 +39,7 @@ def bgr(colour: str) -> tuple[int, int, int]:
 
 
 FONT = cv2.FONT_HERSHEY_DUPLEX
+NUMBERED_PX = 35  # between lines of a grid, from which on they have numbers
 SHIFT = 4  # cv2 draws between pixels when coordinates are given in sixteenths
 HEAD = np.array([(0.6, 0.0), (-0.4, 0.375), (-0.2, 0.0), (-0.4, -0.375)])  # of an arrow of length 1
 
@@ -46,31 +47,38 @@ HEAD = np.array([(0.6, 0.0), (-0.4, 0.375), (-0.2, 0.0), (-0.4, -0.375)])  # of 
 class Plan:
     """A view of the area between two corners (x, y), m, scaled to a width; y points up."""
 
-    def __init__(self, low: Sequence[float], high: Sequence[float], width_px: int):
+    def __init__(self, low: Sequence[float], high: Sequence[float], width_px: int,
+                 height_px: int | None = None):
+        """`height_px`: with another scale upwards, as a curve has."""
         self._low, self._high = np.asarray(low, float), np.asarray(high, float)
-        self.px_per_m = width_px / (self._high[0] - self._low[0])
-        height_px = round((self._high[1] - self._low[1]) * self.px_per_m)
+        wide, high_m = self._high - self._low
+        self.px_per_m = width_px / wide
+        height_px = height_px or round(high_m * self.px_per_m)
+        self._scale = self.px_per_m, -height_px / high_m
         self.image = np.full((height_px, width_px, 3), bgr(FLOOR), np.uint8)
 
     def copy(self) -> Plan:
         """A copy that can be drawn on further."""
-        other = Plan(self._low, self._high, self.image.shape[1])
+        other = copy.copy(self)
         other.image = self.image.copy()
         return other
 
     def to_px(self, points: Iterable[Sequence[float]]) -> np.ndarray:
         """World points (n, 2) as pixel coordinates (n, 2), float."""
         points = np.asarray(points, float).reshape(-1, 2)
-        return (points - (self._low[0], self._high[1])) * (self.px_per_m, -self.px_per_m)
+        return (points - (self._low[0], self._high[1])) * self._scale
 
-    def grid(self, step: float) -> None:
-        """Draw grid lines `step` metres apart."""
-        for axis in (0, 1):
-            first, last = math.ceil(self._low[axis] / step), math.floor(self._high[axis] / step)
+    def grid(self, step: float, step_up: float | None = None) -> None:
+        """Draw lines `step` metres apart, with their numbers where there is room."""
+        for axis, apart in enumerate((step, step_up or step)):
+            first, last = math.ceil(self._low[axis] / apart), math.floor(self._high[axis] / apart)
             for number in range(first, last + 1):
                 ends = np.array((self._low, self._high))
-                ends[:, axis] = number * step
+                ends[:, axis] = number * apart
                 self.line(ends, GRID)
+                if apart * abs(self._scale[axis]) > NUMBERED_PX:
+                    x, y = self.to_px(ends)[0].round().astype(int).tolist()
+                    write_text(self.image, f"{number * apart:g}", (x + 4, y - 4), 9, bgr(FAINT))
 
     def line(self, points: Iterable[Sequence[float]], colour: str, thick_px: int = 1,
              closed: bool = False) -> None:
@@ -79,11 +87,16 @@ class Plan:
         if len(pixels) > 1:
             cv2.polylines(self.image, [pixels], closed, bgr(colour), thick_px, cv2.LINE_AA, SHIFT)
 
-    def disc(self, place: Sequence[float], radius: float, colour: str) -> None:
-        """Draw a disc; place and radius in m."""
+    def disc(self, place: Sequence[float], radius: float, colour: str, thick_px: int = -1) -> None:
+        """Draw a disc, or a ring that is so thick; place and radius in m."""
         centre = _fixed(self.to_px([place]))[0].tolist()
         cv2.circle(self.image, centre, round(radius * self.px_per_m * (1 << SHIFT)), bgr(colour),
-                   -1, cv2.LINE_AA, SHIFT)
+                   thick_px, cv2.LINE_AA, SHIFT)
+
+    def cross(self, place: Sequence[float], colour: str) -> None:
+        """Draw a cross, 14 px wide."""
+        cv2.drawMarker(self.image, tuple(np.round(self.to_px([place]))[0].astype(int).tolist()),
+                       bgr(colour), cv2.MARKER_TILTED_CROSS, 14, 2, cv2.LINE_AA)
 
     def dots(self, points: np.ndarray, colour: str) -> None:
         """Draw dots, 3 px wide, at points (n, 2), m."""
@@ -92,38 +105,27 @@ class Plan:
 
     def arrow(self, pose: Sequence[float], length: float, colour: str) -> None:
         """Draw an arrow head (length in m) with its reference point at x, y, yaw."""
-        corners = _fixed(self.to_px(arrow(pose, length)))
+        x, y, yaw = pose
+        turn = np.array([(math.cos(yaw), math.sin(yaw)), (-math.sin(yaw), math.cos(yaw))])
+        corners = _fixed(self.to_px(length * HEAD @ turn + (x, y)))
         cv2.fillPoly(self.image, [corners], bgr(colour), cv2.LINE_AA, SHIFT)
         cv2.polylines(self.image, [corners], True, (255, 255, 255), 2, cv2.LINE_AA, SHIFT)
 
 
-def course_plan(track_file: TrackFile, width_px: int, line_colour: str,
-                margin: float = 0.15) -> Plan:
+def course_plan(track_file: TrackFile, width_px: int, line_colour: str) -> Plan:
     """A view of the floor with a 0.5 m grid, the two lines and the start."""
     yellow = build_track(track_file)
     white = yellow.offset(-track_file.lane_width)
     points = np.array(yellow.points() + white.points())
-    plan = Plan(points.min(axis=0) - margin, points.max(axis=0) + margin, width_px)
+    plan = Plan(points.min(axis=0) - 0.15, points.max(axis=0) + 0.15, width_px)
     plan.grid(0.5)
     for line, colour in ((white, WHITE), (yellow, line_colour)):
         plan.line(line.points(), colour, max(2, round(track_file.line_width * plan.px_per_m)),
                   closed=True)
-    plan.line(start_mark(yellow.pose(0.0)), START, 3)
+    x, y, heading = yellow.pose(0.0)
+    across = 0.07 * math.sin(heading), -0.07 * math.cos(heading)
+    plan.line(np.add((x, y), np.outer((-1, 1), across)), START, 3)
     return plan
-
-
-def start_mark(pose: Sequence[float]) -> np.ndarray:
-    """Ends (2, 2) of a short line across the track's start."""
-    x, y, heading = pose
-    across = 0.07 * np.array((math.sin(heading), -math.cos(heading)))
-    return np.array((x, y)) + np.array((-across, across))
-
-
-def arrow(pose: Sequence[float], length: float) -> np.ndarray:
-    """Corners (4, 2) of an arrow head with its reference point at x, y, yaw; m, rad."""
-    x, y, yaw = pose
-    turn = np.array([(math.cos(yaw), math.sin(yaw)), (-math.sin(yaw), math.cos(yaw))])
-    return length * HEAD @ turn + (x, y)
 
 
 def write_text(image: np.ndarray, text: str, at_px: tuple[int, int], height_px: int,
@@ -135,69 +137,45 @@ def write_text(image: np.ndarray, text: str, at_px: tuple[int, int], height_px: 
     return cv2.getTextSize(text, FONT, scale, thick)[0][0]
 
 
-LEGEND_PX = 28  # height of a legend's bar
+LEGEND_PX = 28  # height of a row of a legend
 
 
 def legend_bar(width_px: int, entries: Iterable[tuple[str, str]]) -> np.ndarray:
-    """A bar (LEGEND_PX, width, 3), BGR, that says in words what colours mean."""
-    bar = np.full((LEGEND_PX, width_px, 3), bgr(PAPER), np.uint8)
-    left, middle = 16, LEGEND_PX // 2
+    """Rows (n LEGEND_PX, width, 3), BGR, that say in words what colours mean."""
+    rows, left = [], width_px
     for text, colour in entries:
-        cv2.rectangle(bar, (left, middle - 3), (left + 18, middle + 3), bgr(colour), -1)
-        left += 46 + write_text(bar, text, (left + 25, middle + 5), 11)
-    return bar
+        entry = np.full((LEGEND_PX, width_px, 3), bgr(PAPER), np.uint8)
+        middle = LEGEND_PX // 2
+        cv2.rectangle(entry, (0, middle - 3), (18, middle + 3), bgr(colour), -1)
+        wide = 46 + write_text(entry, text, (25, middle + 5), 11)
+        if left + wide > width_px and left > 16:
+            rows.append(np.full_like(entry, bgr(PAPER)))
+            left = 16
+        room = rows[-1][:, left:left + wide]
+        room[:] = entry[:, :room.shape[1]]
+        left += wide
+    return np.vstack(rows) if rows else np.full((LEGEND_PX, width_px, 3), bgr(PAPER), np.uint8)
 
 
 def _fixed(points_px: np.ndarray) -> np.ndarray:
     return np.round(np.asarray(points_px) * (1 << SHIFT)).astype(np.int32)
 
 
-DPI, WIDTH, SIDE, HEADER, FOOT = 100, 14.0, 0.5, 1.25, 0.45  # px an inch; inches
-ARROW = 0.055  # the length of the car's arrow for one of the course's width
-PANEL_DPI, PANEL = 110, (6.5, 3.4)  # of charts: px an inch; inches
+DPI, PANEL_DPI, PANEL = 100, 110, (6.5, 3.4)  # of small plots and of charts: px an inch; inches
+MAP_PX, SIDE_PX, ARROW_PX = 1300, 50, 70  # of a sheet: its maps' width, beside them; the car
 
 
-def map_sheet(title: str, subtitle: str, low: Sequence[float], high: Sequence[float],
-              more: float = 0.0) -> tuple[Figure, Axes]:
-    """A figure, 1400 px wide, with a map of the area between two corners (x, y), m.
-
-    `more` inches stay free below the map.
-    """
-    from matplotlib.figure import Figure
-
-    (left, bottom), (right, top) = low, high
-    map_width = WIDTH - 2 * SIDE
-    map_height = map_width * (top - bottom) / (right - left)
-    height = HEADER + map_height + FOOT + more
-    figure = Figure(figsize=(WIDTH, height), dpi=DPI, facecolor=PAPER)
-    figure.text(SIDE / WIDTH, 1 - 0.62 / height, title, color=TEXT, size=22)
-    figure.text(SIDE / WIDTH, 1 - 1.02 / height, subtitle, color=FAINT, size=11)
-    axes = figure.add_axes((SIDE / WIDTH, (FOOT + more) / height, map_width / WIDTH,
-                            map_height / height))
-    axes.set(xlim=(left, right), ylim=(bottom, top), xlabel="m")
-    _finish(axes)
-    return figure, axes
-
-
-def below(figure: Figure, more: float) -> Axes:
-    """Axes for a curve in the `more` inches below a map."""
-    height = figure.get_figheight()
-    axes = figure.add_axes(
-        (SIDE / WIDTH, 0.6 / height, 1 - 2 * SIDE / WIDTH, (more - 0.7) / height))
-    _finish(axes)
-    return axes
-
-
-def legend(axes: Axes) -> None:
-    """Add a legend where it covers least; matplotlib warns if that takes a second."""
-    warnings.filterwarnings("ignore", "Creating legend with loc")
-    axes.legend(facecolor=PAPER, edgecolor=GRID, labelcolor=TEXT, fontsize=9)
-
-
-def draw_arrow(axes: Axes, pose: Sequence[float], length: float, colour: str,
-               text: str | None = None) -> None:
-    """Draw an arrow head of this length (m) at x, y, yaw; m, rad; `text` goes into the legend."""
-    axes.fill(*arrow(pose, length).T, facecolor=colour, edgecolor="white", zorder=5, label=text)
+def sheet(texts: Sequence[str], plans: Sequence[Plan], entries: Iterable[tuple[str, str]]
+          ) -> np.ndarray:
+    """A picture (rows, MAP_PX + 2 SIDE_PX, 3), BGR: title and figures, the plans, a legend."""
+    page = np.full((70 + 27 * (len(texts) - 1), MAP_PX + 2 * SIDE_PX, 3), bgr(PAPER), np.uint8)
+    write_text(page, texts[0], (SIDE_PX, 55), 22)
+    for number, text in enumerate(texts[1:], start=1):
+        write_text(page, text, (SIDE_PX, 60 + 27 * number), 11, bgr(FAINT))
+    legend = legend_bar(MAP_PX, [*entries, ("grid: m", GRID)])
+    parts = [*(plan.image for plan in plans), legend]
+    return np.vstack([page, *(cv2.copyMakeBorder(
+        part, 10, 10, SIDE_PX, SIDE_PX, cv2.BORDER_CONSTANT, value=bgr(PAPER)) for part in parts)])
 
 
 def pixels(figure: Figure) -> np.ndarray:
@@ -217,38 +195,29 @@ def write_png(path: Path, picture: np.ndarray) -> None:
 def path_picture(track_file: TrackFile, drive: LapScorer, line_colour: str, title: str,
                  subtitle: str) -> np.ndarray:
     """The driven path over the course (rows, 1400, 3), BGR, a colour for each lap."""
-    yellow = build_track(track_file)
-    white = yellow.offset(-track_file.lane_width)
-    lines = [np.array([*line.points(), line.points()[0]]) for line in (yellow, white)]
-    everything = np.concatenate(lines)
-    figure, axes = map_sheet(title, subtitle, everything.min(0) - 0.15, everything.max(0) + 0.15)
-    points_a_metre = 72 * (WIDTH - 2 * SIDE) / (np.ptp(everything[:, 0]) + 0.3)
-    texts = ("the line that the car follows", "right edge of the lane")
-    for points, colour, text in zip(lines, (line_colour, WHITE), texts, strict=True):
-        axes.plot(*points.T, color=colour, label=text,
-                  linewidth=max(1.5, track_file.line_width * points_a_metre))
-    axes.plot(*start_mark(yellow.pose(0.0)).T, color=START, linewidth=3, label="start")
-    _draw_laps(axes, drive, ARROW * np.ptp(everything[:, 0]))
-    legend(axes)
-    return pixels(figure)
+    plan = course_plan(track_file, MAP_PX, line_colour)
+    entries = [("the line that the car follows", line_colour), ("right edge of the lane", WHITE),
+               ("start", START)]
+    if drive.samples:
+        entries += _draw_laps(plan, drive)
+    return sheet((title, subtitle), [plan], entries)
 
 
-def _draw_laps(axes: Axes, drive: LapScorer, arrow_length: float) -> None:
-    """Draw all laps; they overlap, so earlier ones are wider, to remain visible."""
-    if not drive.samples:
-        return
+def _draw_laps(plan: Plan, drive: LapScorer) -> list[tuple[str, str]]:
+    """Draw all laps, of which earlier ones are wider, to remain visible; returns the legend's."""
     points = np.array([(sample.x, sample.y) for sample in drive.samples])
     numbers = np.minimum(drive.lap_numbers, drive.wanted_laps - 1)
-    for number in range(numbers[-1] + 1):
+    last, end, found = numbers[-1], drive.samples[-1], []
+    for number in range(last + 1):
         chosen = np.flatnonzero(numbers == number)
-        text = f"lap {number + 1}{_lap_figures(drive, number)}" if number < len(LAPS) else None
-        axes.plot(*points[max(chosen[0] - 1, 0):chosen[-1] + 1].T, color=lap_colour(number),
-                  label=text, linewidth=2 * (1 + 0.6 * min(numbers[-1] - number, 4)))
-    if numbers[-1] >= len(LAPS):
-        axes.plot([], [], color=FAINT,
-                  label=f"laps {len(LAPS) + 1} to {numbers[-1] + 1}: the same colours again")
-    last = drive.samples[-1]
-    draw_arrow(axes, (last.x, last.y, last.yaw), arrow_length, CAR, "car at the end")
+        plan.line(points[max(chosen[0] - 1, 0):chosen[-1] + 1], lap_colour(number),
+                  round(3 * (1 + 0.6 * min(last - number, 4))))
+        if number < len(LAPS):
+            found.append((f"lap {number + 1}{_lap_figures(drive, number)}", lap_colour(number)))
+    if last >= len(LAPS):
+        found.append((f"laps {len(LAPS) + 1} to {last + 1}: the same colours again", FAINT))
+    plan.arrow((end.x, end.y, end.yaw), ARROW_PX / plan.px_per_m, CAR)
+    return [*found, ("car at the end", CAR)]
 
 
 def _lap_figures(drive: LapScorer, number: int) -> str:
@@ -290,14 +259,3 @@ def chart(path: Path, rows: int, columns: int, **settings: object) -> Iterator[n
         axes.grid(alpha=0.3)
     sheet.tight_layout()
     write_png(path, pixels(sheet))
-
-
-def _finish(axes: Axes) -> None:
-    axes.set_facecolor(FLOOR)
-    axes.grid(color=GRID)
-    axes.tick_params(colors=FAINT, labelsize=8, length=0)
-    axes.xaxis.label.set_color(FAINT)
-    axes.yaxis.label.set_color(FAINT)
-    axes.set_axisbelow(True)
-    for spine in axes.spines.values():
-        spine.set_visible(False)

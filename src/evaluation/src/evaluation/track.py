@@ -26,7 +26,6 @@ from ai_robot_tracking.scenes.world_file import RADIUS, world_text
 
 from evaluation.command_line import LARGEST_SEED, Parser, number, one_of
 from evaluation.film import FAST_FILM_PERIOD, FILM_PERIOD, CameraFilm, side_by_side
-from evaluation.lap import Sample
 from evaluation.live import CarDrive, Outcome
 from evaluation.picture import (
     BAD,
@@ -34,13 +33,11 @@ from evaluation.picture import (
     FAINT,
     GOOD,
     HIDDEN,
+    MAP_PX,
     Plan,
-    below,
-    draw_arrow,
-    legend,
-    map_sheet,
-    pixels,
+    sheet,
     write_png,
+    write_text,
 )
 from evaluation.report import write_json
 from evaluation.run_page import RUN_PAGE
@@ -104,9 +101,8 @@ def _rounded(value: float | None, digits: int) -> float | None:
 TARGET_WAY, SHADE, FOLLOWER, WALL = "#823c46", "#24262a", "#78c8f0", "#8c9196"
 MARGIN = 0.15  # m round the walls
 WALLS = HALF_ROOM * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)])
-CURVE = 3.0  # inches
-MOST_SHOWN = 1.0  # m off the wanted distance, at the plot's edges
-PLAN_PX = 480
+MOST_SHOWN = 1.0  # m off the wanted distance, at the curve's edges
+PLAN_PX, CURVE_PX = 480, 240  # the film's plan's width; the curve's height
 
 
 class TrackFilm(CameraFilm):
@@ -115,15 +111,7 @@ class TrackFilm(CameraFilm):
     def __init__(self, path: Path, topic: str, scene: Scene, drive: TrackScorer, period: float):
         super().__init__(path, topic, period)
         self._drive = drive
-        edge = HALF_ROOM + MARGIN
-        self._floor = Plan((-edge, -edge), (edge, edge), PLAN_PX)
-        self._floor.grid(1.0)
-        self._floor.line(WALLS, WALL, 4)
-        for shade in scene.shades:
-            self._floor.disc(shade, SHADE_RADIUS, SHADE)
-        for thing in scene.lookalikes:
-            red, green, blue = (round(255 * part) for part in thing.colour)
-            self._floor.disc(thing.place[:2], 0.25, f"#{red:02x}{green:02x}{blue:02x}")
+        self._floor = room(scene, PLAN_PX)
 
     def page(self, view: np.ndarray, now: float) -> np.ndarray:
         drive = self._drive
@@ -134,81 +122,71 @@ class TrackFilm(CameraFilm):
                 else f"beside {drive.task.wanted:g} m: {error * 100:+5.1f} cm")
         words = {16: f"simulated time {now:5.1f} s",
                  270: f"{drive.distance:5.2f} m driven   {text}"}
-        return side_by_side(view, self._plan(), words, self._period)
-
-    def _plan(self) -> np.ndarray:
-        """Top view of the drive so far: green where the distance was kept, else orange."""
-        plan, drive = self._floor.copy(), self._drive
-        samples, errors = drive.samples[:], drive.errors[:]
-        now = samples[-1].time
-        plan.line(target_way(drive.task, samples), TARGET_WAY, 2)
-        near = np.abs(errors) <= BAND
-        borders = [0, *(np.flatnonzero(np.diff(near)) + 1), len(near)]
-        for begin, end in itertools.pairwise(borders):
-            part = samples[max(begin - 1, 0):end]
-            plan.line([(each.x, each.y) for each in part], GOOD if near[begin] else BAD, 2)
-        hidden = any(begin <= now < begin + 3 for begin in drive.task.hidden)
-        plan.disc(drive.task.target(now), RADIUS, HIDDEN if hidden else CAR)
-        plan.arrow((samples[-1].x, samples[-1].y, samples[-1].yaw), 0.4, FOLLOWER)
-        return plan.image
+        plan = self._floor.copy()
+        draw_drive(plan, drive)
+        return side_by_side(view, plan.image, words, self._period)
 
 
-def target_way(task: Task, samples: Sequence[Sample]) -> list[np.ndarray]:
-    """The cylinder's positions during the samples, each (x, y), m."""
-    times = np.arange(samples[0].time, samples[-1].time, 0.2)
-    return [task.target(time) for time in times] or [task.target(samples[-1].time)]
+def room(scene: Scene, width_px: int) -> Plan:
+    """Top view of the scene, without what moves."""
+    edge = HALF_ROOM + MARGIN
+    plan = Plan((-edge, -edge), (edge, edge), width_px)
+    plan.grid(1.0)
+    plan.line(WALLS, WALL, 4)
+    for shade in scene.shades:
+        plan.disc(shade, SHADE_RADIUS, SHADE)
+    for thing in scene.lookalikes:
+        red, green, blue = (round(255 * part) for part in thing.colour)
+        plan.disc(thing.place[:2], 0.25, f"#{red:02x}{green:02x}{blue:02x}")
+    return plan
+
+
+def draw_drive(plan: Plan, drive: TrackScorer) -> None:
+    """The drive so far, and the cylinder's way during it."""
+    samples, errors, task = drive.samples[:], drive.errors[:], drive.task
+    now, last = samples[-1].time, samples[-1]
+    times = np.arange(samples[0].time, now, 0.2)
+    plan.line([task.target(time) for time in times], TARGET_WAY, 2)
+    _draw_runs(plan, [(each.x, each.y) for each in samples], errors)
+    hidden = any(begin <= now < begin + HIDDEN_TIME for begin in task.hidden)
+    plan.disc(task.target(now), RADIUS, HIDDEN if hidden else CAR)
+    plan.arrow((last.x, last.y, last.yaw), 0.4, FOLLOWER)
+
+
+def _draw_runs(plan: Plan, points: Sequence[Sequence[float]], errors: Sequence[float]) -> None:
+    """A line, green where the distance was kept, else orange."""
+    near = np.abs(errors) <= BAND
+    borders = [0, *(np.flatnonzero(np.diff(near)) + 1), len(near)]
+    for begin, end in itertools.pairwise(borders):
+        plan.line(points[max(begin - 1, 0):end], GOOD if near[begin] else BAD, 2)
 
 
 def write_picture(path: Path, scene: Scene, drive: TrackScorer, lines: Sequence[str]) -> None:
     """Write path.png; its title and figures are the summary's lines."""
-    edge = HALF_ROOM + MARGIN
-    figure, axes = map_sheet(lines[0], "   |   ".join(lines[1:3]), (-edge, -edge), (edge, edge),
-                             CURVE)
-    axes.plot(*WALLS.T, color=WALL, linewidth=4)
-    for place in scene.shades:
-        _disc(axes, place, SHADE_RADIUS, SHADE)
-    for thing in scene.lookalikes:
-        _disc(axes, thing.place[:2], 0.25, thing.colour)
-    task, last = drive.task, drive.samples[-1]
-    axes.plot(*np.transpose(target_way(task, drive.samples)), color=TARGET_WAY, linewidth=2)
-    _disc(axes, task.target(last.time), RADIUS, CAR, label="the cylinder")
-    _draw_runs(axes, *np.transpose([(each.x, each.y) for each in drive.samples]), drive)
-    draw_arrow(axes, (last.x, last.y, last.yaw), 0.4, FOLLOWER)
-    legend(axes)
-    _draw_curve(below(figure, CURVE), drive)
-    write_png(path, pixels(figure))
+    plan = room(scene, MAP_PX)
+    draw_drive(plan, drive)
+    what, curve = ("cylinder", "m to the cylinder") if drive.task.wanted is None else (
+        "wanted distance", "m beside the wanted distance")
+    write_png(path, sheet(lines[:3], [plan, _curve(drive)], [
+        ("the cylinder", CAR), (f"within {BAND:g} m of the {what}", GOOD), ("not", BAD),
+        (curve, FAINT)]))
 
 
-def _draw_runs(axes: object, x: np.ndarray, y: np.ndarray, drive: TrackScorer) -> None:
-    """Plot a curve: green where the distance was kept, else orange."""
-    near = np.abs(drive.errors) <= BAND
-    what = "cylinder" if drive.task.wanted is None else "wanted distance"
-    for chosen, colour, text in ((near, GOOD, f"within {BAND:g} m of the {what}"),
-                                 (~near, BAD, "not")):
-        axes.plot(x, np.where(chosen, y, np.nan), color=colour, linewidth=2, label=text)
-
-
-def _draw_curve(axes: object, drive: TrackScorer) -> None:
-    """Plot the deviation from the wanted distance (or the distance to the cylinder), m, over s."""
-    times = np.array([each.time for each in drive.samples]) - drive.samples[0].time
-    wanted = drive.task.wanted is not None
+def _curve(drive: TrackScorer) -> Plan:
+    """The deviation from the wanted distance (or the distance to the cylinder), m, over s."""
+    began, wanted = drive.samples[0].time, drive.task.wanted is not None
+    times = [each.time - began for each in drive.samples]
     low, high = (-MOST_SHOWN, MOST_SHOWN) if wanted else (0.0, max(*drive.errors, 0.1))
-    for mark in (-BAND, 0.0, BAND) if wanted else (0.0,):
-        axes.axhline(mark, color=FAINT, linewidth=1)
+    plan = Plan((0.0, low), (max(times[-1], 0.1), high), MAP_PX, CURVE_PX)
     for begin in drive.task.hidden:
-        since = begin - drive.samples[0].time
-        axes.axvspan(since, since + HIDDEN_TIME, color=HIDDEN, alpha=0.3)
-    _draw_runs(axes, times, np.clip(drive.errors, low, high), drive)
-    axes.set(xlim=(0, max(times[-1], 0.1)), ylim=(low, high), xlabel="s")
-    axes.set_title("m beside the wanted distance" if wanted else "m to the cylinder", loc="left",
-                   fontsize=9, color=FAINT)
-
-
-def _disc(axes: object, place: Sequence[float], radius: float, colour: object,
-          label: str | None = None) -> None:
-    turn = np.linspace(0, 2 * np.pi, 48)
-    axes.fill(place[0] + radius * np.cos(turn), place[1] + radius * np.sin(turn), color=colour,
-              label=label)
+        middle = begin - began + HIDDEN_TIME / 2
+        plan.line([(middle, low), (middle, high)], SHADE, round(HIDDEN_TIME * plan.px_per_m))
+    plan.grid(10.0, 0.5 if wanted else 1.0)
+    for mark in (-BAND, 0.0, BAND) if wanted else (0.0,):
+        plan.line([(0.0, mark), (times[-1], mark)], FAINT)
+    _draw_runs(plan, np.column_stack((times, np.clip(drive.errors, low, high))), drive.errors)
+    write_text(plan.image, "s", (MAP_PX - 20, CURVE_PX - 8), 9)
+    return plan
 
 
 PACKAGE, LAUNCH = "ai_robot_tracking", "start_tracking.launch"
