@@ -4,12 +4,13 @@ Reads tracks/racetrack.yaml (m, world frame) and writes the textures of models/r
 models/smartcar_plane. The road's colours only depend on the distance to its centre line.
 """
 
-import math
 from pathlib import Path
 
 import numpy as np
 import yaml
-from racecar_description.track.course_model import encode_png
+from racecar_description.track.closed_line import build_track
+from racecar_description.track.course_model import encode_png, piece_distance
+from racecar_description.track.track_file import load_track_file
 
 PACKAGE = "src/racecar_description"
 TRACK = Path(__file__).resolve().parents[2] / PACKAGE / "tracks/racetrack.yaml"
@@ -23,47 +24,9 @@ LAWNS = ((62, 104, 58), (70, 114, 64))  # RGB
 ASPHALT, YELLOW, WHITE, BLACK = (52, 53, 56), (250, 205, 20), (235, 235, 235), (20, 20, 20)
 
 
-def round_corners(corners):
-    """Pieces (x, y, heading, length, curvature) of the polygon with rounded corners."""
-    points = np.array([(corner["x"], corner["y"]) for corner in corners])
-    ways = np.roll(points, -1, axis=0) - points
-    headings = np.arctan2(ways[:, 1], ways[:, 0])
-    turns = (headings - np.roll(headings, 1) + math.pi) % (2 * math.pi) - math.pi
-    radii = np.array([corner["radius"] for corner in corners])
-    cuts = radii * np.tan(np.abs(turns) / 2)
-    pieces = []
-    for i, way in enumerate(ways):
-        arriving, leaving = headings[i - 1], headings[i]
-        x, y = points[i] - cuts[i] * np.array((math.cos(arriving), math.sin(arriving)))
-        curvature = math.copysign(1 / radii[i], turns[i])
-        pieces.append((x, y, arriving, abs(turns[i]) * radii[i], curvature))
-        straight = math.hypot(*way) - cuts[i] - cuts[(i + 1) % len(cuts)]
-        if straight < 0:
-            raise ValueError(f"corners[{i}]: its bend and the next overlap by {-straight:.3f} m")
-        x, y = points[i] + cuts[i] * np.array((math.cos(leaving), math.sin(leaving)))
-        pieces.append((x, y, leaving, straight, 0.0))
-    return pieces
-
-
-def distance_to_piece(piece, x, y):
-    """Distance (m) of points from a straight, or from an arc within its angles."""
-    x0, y0, heading, length, curvature = piece
-    ahead = math.cos(heading) * (x - x0) + math.sin(heading) * (y - y0)
-    left = -math.sin(heading) * (x - x0) + math.cos(heading) * (y - y0)
-    if curvature == 0:
-        return np.where((ahead >= 0) & (ahead <= length), np.abs(left), np.inf)
-    radius, side = 1 / abs(curvature), math.copysign(1, curvature)
-    angle = np.arctan2(ahead, radius - side * left) % (2 * math.pi)
-    off = np.abs(np.hypot(ahead, radius - side * left) - radius)
-    return np.where(angle <= length / radius, off, np.inf)
-
-
 def distance_to_line(pieces, x, y):
     """Distance (m) of points from the closed line; rounded, so that last digits have no effect."""
-    nearest = np.min([distance_to_piece(piece, x, y) for piece in pieces], axis=0)
-    # Rounding can leave a tiny gap between two pieces, so the joints are included.
-    joints = np.min([np.hypot(x - piece[0], y - piece[1]) for piece in pieces], axis=0)
-    return np.round(np.minimum(nearest, joints), 7)
+    return np.round(np.min([piece_distance(piece, x, y) for piece in pieces], axis=0), 7)
 
 
 def paint(image, cover, colour):
@@ -83,7 +46,7 @@ def draw_track(track):
     y = middle[1] + half_y - (np.arange(round(2 * half_y * PX_PER_M)) + 0.5) / PX_PER_M
     image = np.empty((len(y), len(x), 3), np.uint8)
     image[:] = np.where(np.floor(x / MOWN)[:, None] % 2 == 0, *np.array(LAWNS, np.uint8)[:, None])
-    pieces = round_corners(track["corners"])
+    pieces = build_track(load_track_file(TRACK)).pieces
     for rows in np.array_split(np.arange(len(y)), 16):
         distance = distance_to_line(pieces, x[None, :], y[rows][:, None])
         part = image[rows]

@@ -85,7 +85,8 @@ def _coverage(track_file: TrackFile, track: Track, side_px: int) -> np.ndarray:
     for piece in track.pieces:
         turned = _turned(piece, -track_file.model_yaw)
         columns, rows = _bounds(turned, centres, reach, half)
-        distance = _distances(turned, centres[columns][None, :], -centres[rows][:, None])
+        distance = np.round(  # so that last digits cannot change a pixel
+            piece_distance(turned, centres[columns][None, :], -centres[rows][:, None]), 9)
         part = np.clip((track_file.line_width / 2 - distance) / metres_per_px + 0.5, 0.0, 1.0)
         cover[rows, columns] = np.maximum(cover[rows, columns], part)
     return np.floor(cover * 255 + 0.5)
@@ -113,10 +114,10 @@ def _bounds(piece: Piece, centres: np.ndarray, reach: float, half: float) -> tup
     return slice(*columns), slice(*rows)
 
 
-def _distances(piece: Piece, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Distance (m) of points from the piece, rounded so that last digits cannot change a pixel."""
+def piece_distance(piece: Piece, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Distance (m) of points from the piece."""
     along = _straight_distance if piece.is_straight else _arc_distance
-    return np.round(along(piece, x - piece.x, y - piece.y), 9)
+    return along(piece, x - piece.x, y - piece.y)
 
 
 def _straight_distance(piece: Piece, dx: np.ndarray, dy: np.ndarray) -> np.ndarray:
