@@ -18,9 +18,9 @@ from lane_keeping.world.scenery import (
     load_scenery,
     person_begin,
 )
-from racecar_description.track.painted_plane import config_text, material_text
+from racecar_description.track.painted_plane import model_texts
 from racecar_description.track.track_file import load_track_file
-from sdf import box, cylinder, document, painted_floor, sphere
+from sdf import box, cylinder, sphere
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "src/lessons/lane_keeping"
@@ -38,11 +38,10 @@ def files() -> dict[str, bytes]:
         PACKAGE / "config/lane_scenery.yaml")
     track_file = load_track_file(ROOT / "src/evaluation/tracks/lane.yaml")
     plane, texture = plane_of(track_file), draw_ground(track_file, crossings, scenery)
+    model = model_texts(MODEL, description=_DESCRIPTION, size=(plane.width, plane.height),
+                        uri=f"model://{MODEL}", part="")
     texts = {
-        f"models/{MODEL}/model.config": config_text(MODEL, _DESCRIPTION),
-        f"models/{MODEL}/model.sdf": document(
-            painted_floor(MODEL, MODEL, (plane.width, plane.height))),
-        f"models/{MODEL}/materials/scripts/{MODEL}.material": material_text(MODEL),
+        **{f"models/{MODEL}/{path}": text for path, text in model.items()},
         "worlds/lane.world": _world(plane, scenery, _people(crossings)),
         "worlds/lane_empty.world": _world(plane, scenery, []),
     }

@@ -5,41 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from racecar_description.track.painted_plane import material_text
+from racecar_description.track.painted_plane import config_text, material_text
 
 Numbers = tuple[float, ...]
 ORIGIN: Numbers = (0.0, 0.0, 0.0)
 WHITE, GREY, DARK = (0.9, 0.9, 0.9), (0.6, 0.6, 0.6), (0.15, 0.15, 0.15)
 
-MODEL_CONFIG = """<?xml version="1.0"?>
-<model>
-  <name>{name}</name>
-  <version>1.0</version>
-  <sdf version="1.4">model.sdf</sdf>
-  <author><name>ros1-driving-courses</name></author>
-  <description>{description}</description>
-</model>
-"""
-PAINTED_FLOOR = """  <model name="{name}">
-    <static>true</static>
-    <link name="{part}link">
-      <collision name="{part}collision">
-        <geometry><plane><normal>0 0 1</normal><size>{size}</size></plane></geometry>
-        <surface><friction><ode><mu>100</mu><mu2>50</mu2></ode></friction></surface>
-      </collision>
-      <visual name="{part}visual">
-        <cast_shadows>false</cast_shadows>
-        <geometry><plane><normal>0 0 1</normal><size>{size}</size></plane></geometry>
-        <material>
-          <script>
-            <uri>model://{folder}/materials/scripts</uri>
-            <uri>model://{folder}/materials/textures</uri>
-            <name>{name}</name>
-          </script>
-        </material>
-      </visual>
-    </link>
-  </model>"""
 DOCUMENT = '<?xml version="1.0"?>\n<sdf version="1.4">\n{body}\n</sdf>\n'
 
 
@@ -111,15 +82,6 @@ def model(name: str, links: Iterable[str], place: Numbers = ORIGIN, static: int 
     return f"{head}\n{body}\n  </model>"
 
 
-def painted_floor(name: str, folder: str, size: Numbers, part: str = "") -> str:
-    """A `<model>` that shows the texture NAME.png of a model folder; `size`: x and y, m.
-
-    `part` stands before the names of its link, collision and visual.
-    """
-    return PAINTED_FLOOR.format(name=name, folder=folder, part=part,
-                                size=" ".join(f"{side:g}" for side in size))
-
-
 def document(body: str) -> str:
     """A whole SDF file."""
     return DOCUMENT.format(body=body)
@@ -127,9 +89,8 @@ def document(body: str) -> str:
 
 def model_files(folder: str, text: str, description: str) -> dict[str, bytes]:
     """The two files of a model folder; paths below `models/`."""
-    config = MODEL_CONFIG.format(name=folder.rpartition("/")[2], description=description)
     return {f"{folder}/model.sdf": document(text).encode(),
-            f"{folder}/model.config": config.encode()}
+            f"{folder}/model.config": config_text(folder.rpartition("/")[2], description).encode()}
 
 
 def material_files(folder: str, name: str, png: bytes) -> dict[str, bytes]:

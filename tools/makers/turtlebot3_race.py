@@ -10,6 +10,7 @@ import json
 import sdf
 from painting import RED, YELLOW, Canvas, Painter, Point, beside, rounded
 from painting import WHITE as WHITE_PAINT
+from racecar_description.track.painted_plane import model_texts
 from sdf import DARK, GREY, WHITE, Numbers, Part, box, cylinder, sphere
 from turtlebot3_arenas import include, world
 
@@ -23,6 +24,7 @@ BAR_LONG, BAR_HIGH = 0.36, 0.12  # m
 BURGER_INERTIAL = ("<inertial><pose>0 0 0.07 0 0 0</pose><mass>1</mass><inertia><ixx>0.0035</ixx>"
                    "<iyy>0.0035</iyy><izz>0.0035</izz></inertia></inertial>")
 SIDE = 4.0  # m
+FLOOR = "A black floor of 4 x 4 m with the lanes of a race."
 FLOOR_2017, FLOOR_2020 = (10, 10, 10), (0, 0, 0)
 # Driven in this order; the tunnel lies between the end and the start. Signs stand beside the lanes.
 WAY_2017: tuple[Point, ...] = ((0.0, -1.787), (1.787, -1.787), (1.787, 1.787), (-1.787, 1.787),
@@ -194,10 +196,10 @@ def courses() -> dict[str, bytes]:
     files: dict[str, bytes] = {}
     for folder, canvas in (("turtlebot3_autorace/autorace_course", course_2017()),
                            ("turtlebot3_autorace_2020/course", course_2020())):
-        floor = sdf.painted_floor("course", folder, (SIDE, SIDE), "course_")
-        files |= sdf.model_files(folder, floor,
-                                 "A black floor of 4 x 4 m with the lanes of a race.")
-        files |= sdf.material_files(folder, "course", canvas.png())
+        texts = model_texts("course", description=FLOOR, size=(SIDE, SIDE),
+                            uri=f"model://{folder}", part="course_")
+        files |= {f"{folder}/{path}": text.encode() for path, text in texts.items()}
+        files[f"{folder}/materials/textures/course.png"] = canvas.png()
     return files
 
 

@@ -16,9 +16,10 @@ import yaml
 from ai_robot_tracking.scenes.scene import draw_scene, draw_start
 from ai_robot_tracking.scenes.world_file import world_text
 from racecar_description.track.closed_line import Track, build_track, load_track
-from racecar_description.track.course_model import write_model
+from racecar_description.track.course_model import floor_files
 from racecar_description.track.from_numbers import from_seed
 from racecar_description.track.model_files import world_path, write_course
+from racecar_description.track.painted_plane import write_files
 from racecar_description.track.random_circuit import Room, random_circuit
 from racecar_description.track.track_file import load_track_file
 from racecar_description.track.wishes import Wishes
@@ -89,7 +90,7 @@ class Venues:
         longest = max(line.pieces, key=lambda piece: piece.length * piece.is_straight)
         start = longest.pose(longest.length / 2)[:2]
         track_file = replace(own, corners=line.corners, start=start)
-        write_model(track_file, folder / "turtlebot3_autorace" / "course")
+        write_files(floor_files(track_file), folder / "turtlebot3_autorace" / "course")
         world = load_world(find_file(self._course.world), resources(self._course, (folder,)))
         return Venue(world, build_track(track_file))
 

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import numpy as np
 from racecar_description.track.closed_line import build_track, load_track
-from racecar_description.track.course_model import write_model
+from racecar_description.track.course_model import floor_files
 from racecar_description.track.errors import TrackError
+from racecar_description.track.painted_plane import write_files
 from racecar_description.track.track_file import load_track_file
 
 from evaluation.lap import Disturbance, LapScorer, Sample
@@ -78,7 +79,7 @@ def _course(track: Path | None, out: Path) -> _Venue:
     if track is None:
         return world, load_course("course").track_path(), package / "models"
     try:
-        write_model(load_track_file(track), out / "turtlebot3_autorace" / "course")
+        write_files(floor_files(load_track_file(track)), out / "turtlebot3_autorace" / "course")
     except TrackError as error:
         raise RunError(str(error)) from error
     return world, track, out

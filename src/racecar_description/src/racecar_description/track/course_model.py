@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import struct
 import zlib
-from pathlib import Path
 
 import numpy as np
 
@@ -26,22 +25,18 @@ DESCRIPTION = (
 )
 
 
-def write_model(track_file: TrackFile, folder: Path) -> list[Path]:
-    """Write the model's four files into this folder; the same track gives the same bytes."""
+def floor_files(track_file: TrackFile) -> dict[str, bytes]:
+    """The model's four files by their paths in its folder; the same track gives the same bytes."""
     texts = model_texts(
         track_file.name,
         description=DESCRIPTION,
         size=(track_file.size, track_file.size),
         uri=MODEL_URI,
-        part="course",
+        part="course_",
     )
-    files = {relative: text.encode() for relative, text in texts.items()}
-    files[f"materials/textures/{track_file.name}.png"] = encode_png(draw_course(track_file))
-    for relative, data in files.items():
-        path = folder / relative
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(data)
-    return [folder / relative for relative in files]
+    picture = encode_png(draw_course(track_file))
+    return {**{path: text.encode() for path, text in texts.items()},
+            f"materials/textures/{track_file.name}.png": picture}
 
 
 def draw_course(track_file: TrackFile, side_px: int = SIDE_PX) -> np.ndarray:

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from racecar_description.track.circuit import Circuit
-from racecar_description.track.painted_plane import model_texts
+from racecar_description.track.painted_plane import model_texts, write_files
 from racecar_description.track.painting import paint_course, texture_scale
 from racecar_description.track.preview import draw_preview
 from racecar_description.track.track_file import track_text
@@ -117,10 +117,7 @@ def preview_path(name: str) -> PurePosixPath:
 
 def write_course(course: Circuit, folder: Path) -> None:
     """Write all files into a folder; OSError names one that cannot be written."""
-    for relative, data in course_files(course).items():
-        path = folder / relative
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(data)
+    write_files(course_files(course), folder)
 
 
 def course_files(course: Circuit) -> dict[PurePosixPath, bytes]:
@@ -135,7 +132,7 @@ def course_files(course: Circuit) -> dict[PurePosixPath, bytes]:
         description=DESCRIPTION.format(**words),
         size=(plane.width, plane.height),
         uri=f"model://{name}",
-        part=name,
+        part=f"{name}_",
     )
     texts = {model / relative: text for relative, text in model_files.items()} | {
         world_path(name): _world_text(course, wall_boxes(polygons), words),

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Mapping
+from pathlib import Path, PurePath
 
 CONFIG = """<?xml version="1.0"?>
 <model>
   <name>{name}</name>
   <version>1.0</version>
   <sdf version="1.4">model.sdf</sdf>
+  <author><name>ros1-driving-courses</name></author>
   <description>
 {description}
   </description>
@@ -26,8 +29,8 @@ SDF = """<?xml version="1.0"?>
 <sdf version="1.4">
   <model name="{name}">
     <static>true</static>
-    <link name="{part}_link">
-      <collision name="{part}_collision">
+    <link name="{part}link">
+      <collision name="{part}collision">
 {plane}
         <surface>
           <friction>
@@ -38,7 +41,7 @@ SDF = """<?xml version="1.0"?>
           </friction>
         </surface>
       </collision>
-      <visual name="{part}_visual">
+      <visual name="{part}visual">
         <cast_shadows>false</cast_shadows>
 {plane}
         <material>
@@ -76,7 +79,7 @@ def model_texts(
     """Texts by relative path; the texture (not included) is materials/textures/NAME.png.
 
     `size` is the plane's width and height (m), `uri` the model's folder as model://, and `part`
-    is the prefix of the names of its link, collision and visual.
+    stands before the names of its link, collision and visual.
     """
     plane = PLANE.format(width=size[0], height=size[1])
     return {
@@ -94,3 +97,11 @@ def config_text(name: str, description: str) -> str:
 def material_text(name: str) -> str:
     """The material script that shows NAME.png."""
     return MATERIAL.format(name=name)
+
+
+def write_files(files: Mapping[str | PurePath, bytes], folder: Path) -> None:
+    """Write files by their relative paths; OSError names one that cannot be written."""
+    for relative, data in files.items():
+        path = folder / relative
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
