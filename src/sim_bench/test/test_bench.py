@@ -10,16 +10,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sim_bench.acceptance import Criterion, criteria, judge
 from sim_bench.figures import Figure, figure, ratio
 from sim_bench.follower import frame_ages
 from sim_bench.own_process import Contest, OwnProcess
 from sim_bench.parts import growth, memory, robots, step
 from sim_bench.results import (
+    Criterion,
     PartResult,
     Results,
     acceptance_table,
+    criteria,
     figure_table,
+    judge,
     write_chart,
     write_json,
 )

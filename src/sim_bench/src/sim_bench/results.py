@@ -1,25 +1,87 @@
-"""What was measured, as tables on the terminal, bench.json and bench.png."""
+"""What was measured, compared with acceptance.yaml: tables, bench.json and bench.png."""
 
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-from matplotlib import pyplot
+from matplotlib.figure import Figure as Sheet
+from node_basics.records import read_yaml
 
 from evaluation import report
-from sim_bench.acceptance import Verdict, judge
+from run_session.failure import RunError
+from run_session.files import find_package
 from sim_bench.figures import Figure
 
 MUCH = 10.0  # percent of a core, used by others: more than this spoils a measurement
 MET, MISSED = "#3a8f5c", "#c0392b"
 MOST = 4.0  # times its bound, at which a bar is cut off
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """A row of acceptance.yaml; exactly one of the two bounds is given, in the figure's unit."""
+
+    what: str
+    figure: str  # PART/NAME
+    at_least: float | None = None
+    at_most: float | None = None
+    bound_by: tuple[str, ...] = ()  # figures, or beginnings of their names: what it cannot beat
+    limit: str | float = ""  # a figure, or a value: the best that engine and OpenGL alone allow
+
+    def met(self, value: float) -> bool:
+        """Whether a median is within the bound."""
+        return value <= self.at_most if self.at_least is None else value >= self.at_least
+
+    @property
+    def bound(self) -> str:
+        """As it is printed."""
+        return f"<= {self.at_most:g}" if self.at_least is None else f">= {self.at_least:g}"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """A criterion and the figure that was measured for it; figures of `binding` are PART/NAME."""
+
+    criterion: Criterion
+    figure: Figure
+    binding: tuple[Figure, ...] = ()  # of the criterion's `bound_by`, what was measured
+    limit: float | None = None  # in the figure's unit
+
+    @property
+    def met(self) -> bool:
+        """By the median."""
+        return self.criterion.met(self.figure.median)
+
+    @property
+    def share(self) -> float | None:
+        """Of the limit, 1 where nothing but the engine and OpenGL takes time."""
+        if not self.limit:
+            return None
+        share = self.figure.median / self.limit
+        return share if self.criterion.at_most is None else 1 / share
+
+
+def criteria() -> list[Criterion]:
+    """All rows, in the order in which they are printed."""
+    rows = read_yaml(find_package("sim_bench") / "acceptance.yaml", RunError)
+    return [Criterion(**{**row, "bound_by": tuple(row.get("bound_by", ()))}) for row in rows]
+
+
+def judge(figures: Mapping[str, Figure]) -> list[Verdict]:
+    """Verdicts on what was measured; figures by PART/NAME."""
+    found = []
+    for criterion in criteria():
+        limit, bound_by = criterion.limit, criterion.bound_by
+        if isinstance(limit, str):
+            limit = figures[limit].median if limit in figures else None
+        if criterion.figure in figures:
+            found.append(Verdict(criterion, figures[criterion.figure], tuple(
+                replace(one, name=name) for name, one in figures.items()
+                if bound_by and name.startswith(bound_by)), limit))
+    return found
 
 
 @dataclass(frozen=True)
@@ -95,7 +157,8 @@ def acceptance_table(verdicts: Sequence[Verdict]) -> str:
 def write_chart(results: Results, path: Path) -> None:
     """A bar for each criterion that was measured: beyond the line at 1 is good."""
     verdicts = results.verdicts()[::-1]
-    sheet, axes = pyplot.subplots(figsize=(9.0, 1.5 + 0.25 * len(verdicts)), layout="constrained")
+    sheet = Sheet((9.0, 1.5 + 0.25 * len(verdicts)), layout="constrained")
+    axes = sheet.subplots()
     bars = axes.barh([verdict.criterion.what for verdict in verdicts], list(map(_score, verdicts)),
                      color=[MET if verdict.met else MISSED for verdict in verdicts])
     axes.bar_label(bars, [f"{verdict.figure.median:.3g} {verdict.figure.unit} "
@@ -108,7 +171,6 @@ def write_chart(results: Results, path: Path) -> None:
     where = f"{results.machine.get('processor', '')}, {results.machine.get('cores', '?')} cores"
     axes.set_title(f"{kind}{where}, {results.began[:10]}", fontsize=10)
     sheet.savefig(path, dpi=110)
-    pyplot.close(sheet)
 
 
 def _score(verdict: Verdict) -> float:

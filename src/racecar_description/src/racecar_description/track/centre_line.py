@@ -111,17 +111,10 @@ class CentreLine:
 
     def nearest(self, x: float, y: float) -> float:
         """s of the line's point closest to x, y."""
-        points = self.points()
-        step = self.length / len(points)
-        best = step * int(np.argmin(np.hypot(*(points - (x, y)).T)))
-        low, high = best - step, best + step
-        for _ in range(60):  # a ternary search: the distance has one minimum between neighbours
-            third = (high - low) / 3
-            if self._distance(low + third, x, y) < self._distance(high - third, x, y):
-                high -= third
-            else:
-                low += third
-        return (low + high) / 2 % self.length
+        found = [(begin, piece, piece.nearest(x, y))
+                 for begin, piece in zip(self._begins, self.pieces, strict=True)]
+        begin, _, s = min(found, key=lambda one: math.dist(one[1].pose(one[2])[:2], (x, y)))
+        return float(begin + s) % self.length
 
     def tightest(self) -> tuple[float, float, float]:
         """Radius (m) of the sharpest bend, and its x, y."""
@@ -138,10 +131,6 @@ class CentreLine:
         """The line, translated; coordinates are rounded to a nanometre."""
         shifted = [Corner(round(c.x + dx, 9), round(c.y + dy, 9), c.radius) for c in self.corners]
         return CentreLine(shifted)
-
-    def _distance(self, s: float, x: float, y: float) -> float:
-        px, py, _ = self.pose(s)
-        return math.hypot(px - x, py - y)
 
 
 def _pieces(corners: tuple[Corner, ...]) -> tuple[Piece, ...]:

@@ -25,7 +25,7 @@ from racecar_description.track.model_files import (
     world_path,
     write_course,
 )
-from racecar_description.track.problem_picture import draw_problem
+from racecar_description.track.preview import draw_problem
 from racecar_description.track.wishes import Wishes
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
