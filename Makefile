@@ -1,5 +1,5 @@
 # Every command is a script in scripts/; run a script itself to get its own exit code.
-verbs = setup course race viewer drive lane track avoid navigate autorace mark shell deps build report clean clean-root help \
+verbs = setup course race viewer drive lane track avoid navigate autorace mark site shell deps build report clean clean-root help \
   test lint race-trials track-trials lane-trials navigation-trials localisation-trials bench-lanes bench fuzz chaos soak mutants check-releases deb image
 .PHONY: $(verbs)
 .DEFAULT_GOAL = help
@@ -78,6 +78,9 @@ mark: ## drive each submission in a sandbox, and mark it SUBMISSIONS=DIR [COURSE
 	  $(if $(SEEDS),--seeds "$$SEEDS") $(if $(RULES),--rules "$$RULES") \
 	  $(if $(filter-out 0 no false,$(FILM)),--film) $(if $(filter-out 0 no false,$(RESUME)),--resume) \
 	  $(if $(OUT),--out "$$OUT") $(WHERE)
+
+site: ## all pages with a search, in English and Chinese, for the browser: out/site/index.html
+	@scripts/site.sh
 
 shell: ## a terminal in which the lessons' commands work, also on a Linux that is not Debian
 	@scripts/shell.sh

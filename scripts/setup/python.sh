@@ -26,7 +26,8 @@ python_packages() {
   for file in requirements.txt requirements-source.txt requirements-rosdep.txt \
     $([ "$tests" = no ] || echo requirements-test.txt) \
     $([ "$workers" = no ] || echo requirements-workers.txt) \
-    $([ "$learning" = no ] || echo requirements-learning.txt); do
+    $([ "$learning" = no ] || echo requirements-learning.txt) \
+    $([ "$site" = no ] || echo requirements-site.txt); do
     [ -f "$lists/$file" ] && ! cmp -s "$lists/$file" "$state/$file" || continue
     touch "$state/venv-unfinished"
     if [ "$file" = requirements-source.txt ]; then

@@ -1,0 +1,123 @@
+"""`make site`: every link leads somewhere, no other host is asked, and both languages are whole."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.processes
+
+ROOT = Path(__file__).resolve().parent.parent
+TOOL = ROOT / "tools/site"
+sys.path.append(str(TOOL))
+
+from checking import faults  # noqa: E402
+from staging import Pages, _with_links, menu, repository_pages  # noqa: E402
+
+OWN = "<!doctype html><p id='run'>a replay</p>"
+
+
+def built(folder: Path, *words: str) -> subprocess.CompletedProcess:
+    """Runs the builder with a small replay."""
+    replay = folder / "run.html"
+    replay.write_text(OWN, "utf-8")
+    return subprocess.run(
+        [sys.executable, TOOL, "--out", folder / "site", "--replay", replay, *words],
+        capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory) -> Path:
+    """The site of this repository."""
+    folder = tmp_path_factory.mktemp("site")
+    done = built(folder)
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr
+    assert "pages in" in done.stdout
+    assert sorted(path.name for path in folder.iterdir()) == ["run.html", "site"]
+    return folder / "site"
+
+
+def test_both_languages_have_the_same_pages_and_a_replay(site):
+    pages = {language: {path.relative_to(site / language)
+                        for path in (site / language).rglob("*.html")}
+             for language in ("en", "zh")}
+    assert pages["en"] == pages["zh"] and len(pages["en"]) > 90
+    assert (site / "demo/run.html").read_text("utf-8") == OWN
+    for language in pages:
+        assert 'src="../demo/run.html"' in (site / language / "demo.html").read_text("utf-8")
+
+
+def test_every_link_and_anchor_of_the_built_pages_leads_somewhere(site):
+    assert faults(site) == []
+
+
+def test_no_page_style_or_script_asks_another_host(site):
+    for path in [*site.rglob("*.html"), *site.rglob("*.css")]:
+        text = path.read_text("utf-8")
+        assert not re.search(r"""url\(["']?(https?:)?//|@import""", text), path
+        assert "fonts.g" not in text and "unpkg" not in text, path
+
+
+def test_the_search_has_each_language_and_splits_chinese_into_words(site):
+    docs = {language: json.loads((site / language / "search/search_index.json").read_text("utf-8"))
+            for language in ("en", "zh")}
+    words = {word for each in docs["zh"]["docs"] for word in each["text"].split("\u200b")}
+    assert {"雷达", "里程计", "课程"} <= words
+    assert any("odometry" in each["text"] for each in docs["en"]["docs"])
+
+
+@pytest.mark.parametrize("text, linked", [
+    ("[a](docs/linux.md)", "[a](docs/linux.md)"),
+    ("[a](docs/linux.zh-CN.md#x)", "[a](docs/linux.md#x)"),
+    ("[lessons](src/lessons)", "[lessons](src/lessons/README.md)"),
+    ("[licence](LICENSE)", "licence (`LICENSE`)"),
+    ("[packages.yaml](dependencies/packages.yaml)", "`dependencies/packages.yaml`"),
+    ("[`x`](https://example.org/a)", "[`x`](https://example.org/a)"),
+    ("`[a](LICENSE)`", "`[a](LICENSE)`"),
+    ("```\n[a](LICENSE)\n```", "```\n[a](LICENSE)\n```"),
+])
+def test_links_lead_to_pages_and_files_are_their_paths(text, linked):
+    texts = dict.fromkeys(("README.md", "docs/linux.md", "src/lessons/README.md"), "# T\n")
+    assert _with_links(text, "README.md", Pages({"en": texts, "zh": texts}), "en") == linked
+
+
+def test_an_english_text_among_the_chinese_names_the_chinese_anchor():
+    pages = Pages({"en": {"a.md": "# A\n## Where\n"}, "zh": {"a.md": "# 甲\n## 哪里\n"}})
+    assert _with_links("[w](a.md#where)", "b.md", pages, "zh") == "[w](a.md#哪里)"
+
+
+def test_each_page_is_in_the_menu_once_and_a_new_place_is_named():
+    pages = repository_pages()
+    chosen = [path for section in menu(pages.texts["en"], "en") for entries in section.values()
+              for entry in entries for path in entry.values()]
+    assert sorted(chosen) == sorted(pages.texts["en"])
+    with pytest.raises(ValueError, match=r"no section has elsewhere/a\.md"):
+        menu({"elsewhere/a.md": "# A"}, "en")
+
+
+@pytest.mark.parametrize("body, problem", [
+    ('<a href="gone.html">', "gone.html: there is no such file"),
+    ('<a href="#gone">', "#gone: the page has no such anchor"),
+    ('<a href="../../b.html">', "no such file"),
+    ('<a href="/b.html">', "begins at the server's root"),
+    ('<img src="https://example.org/a.png">', "is loaded from another host"),
+    ('<script src="//example.org/a.js">', "is loaded from another host"),
+])
+def test_a_dead_or_foreign_link_is_a_line_with_its_page(tmp_path, body, problem):
+    (tmp_path / "a.html").write_text(f'<p id="here">{body}<a href="#here"><a href="https://x.org">')
+    (found,) = faults(tmp_path)
+    assert found.startswith("a.html: ") and problem in found
+
+
+def test_a_replay_that_is_not_there_is_one_line_and_the_old_site_stays(tmp_path):
+    old = tmp_path / "site/index.html"
+    old.parent.mkdir()
+    old.write_text("old")
+    done = built(tmp_path, "--replay", str(tmp_path / "none.html"))
+    assert (done.returncode, done.stderr) == (
+        1, f"site: {tmp_path}/none.html: No such file or directory\n")
+    assert old.read_text() == "old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["run.html", "site"]

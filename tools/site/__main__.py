@@ -1,0 +1,113 @@
+"""Builds the site of all pages, in English and Chinese: scripts/site.sh runs it.
+
+    python3 tools/site [--out DIR]      DIR: out/site
+
+It is built beside DIR and takes its place when it is whole; exit code 1 with one line otherwise.
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import shutil
+import sys
+import tempfile
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import rjieba
+from checking import faults
+from material.plugins.search import plugin as search
+from mkdocs.commands.build import build
+from mkdocs.config import load_config
+from mkdocs.exceptions import Abort, MkDocsException
+from staging import HERE, ROOT, Pages, repository_pages, stage
+
+NAMES = {"en": "ROS 1 driving courses", "zh": "ROS 1 小车课程"}
+REPLAY = ROOT / "out/course/run.html"
+START = """<!doctype html><meta charset="utf-8"><title>ROS 1 driving courses</title>
+<script>
+location.replace((navigator.language.startsWith("zh") ? "zh" : "en") + "/index.html");
+</script>
+<p><a href="en/index.html">English</a> <a href="zh/index.html">中文</a></p>
+"""
+DEMO = ("# A drive, to look at\n\nThe line follower's last lap on this machine, in 3D: drag turns "
+        "the view, the wheel zooms, the bar below is the time. `make course FAST=1` and then "
+        "`make site` put a new one here. <a href=\"../demo/run.html\">The page alone</a>\n\n",
+        "# 看一次行驶\n\n这台电脑上巡线小车最近一次行驶的 3D 回放："
+        "拖动可转动视角，滚轮缩放，下方是时间轴。"
+        "先 `make course FAST=1` 再 `make site` 就会换成新的。"
+        "<a href=\"../demo/run.html\">单独打开</a>\n\n")
+FRAME = '<iframe class="site-demo" src="../demo/run.html" title="run.html"></iframe>\n'
+
+
+class SiteError(Exception):
+    """The site cannot be built; one line says why."""
+
+
+def short_words(text: bytes) -> list[str]:
+    """Chinese words as the search keeps them: the parts of a long word where it is made of some."""
+    found = []
+    for word in rjieba.cut(text.decode()):
+        parts = [part for part in rjieba.cut_for_search(word) if part != word]
+        found += parts if "".join(parts) == word else [word]
+    return found
+
+
+def all_pages() -> Pages:
+    """The repository's pages and the made ones."""
+    pages = repository_pages()
+    pages.add("demo.md", *(text + FRAME for text in DEMO))
+    return pages
+
+
+def build_site(out: Path, replay: Path) -> None:
+    """Build at `out`; SiteError names what is wrong."""
+    search.jieba = SimpleNamespace(cut=short_words)
+    for language, menu in stage(all_pages(), out / "pages"):
+        config = load_config(str(HERE / "mkdocs.yml"), docs_dir=str(out / "pages" / language),
+                             site_dir=str(out / language), nav=menu, site_name=NAMES[language])
+        config.theme["language"] = language
+        config.plugins.on_startup(command="build", dirty=False)
+        build(config)
+        for name in ("404.html", "sitemap.xml", "sitemap.xml.gz"):  # of a server's root alone
+            (out / language / name).unlink(missing_ok=True)
+    shutil.rmtree(out / "pages")
+    (out / "index.html").write_text(START, "utf-8")
+    (out / "demo").mkdir()
+    shutil.copyfile(replay, out / "demo/run.html")
+    if wrong := faults(out):
+        raise SiteError("\n".join(wrong))
+
+
+def main() -> int:
+    """The exit status."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, metavar="DIR", default=ROOT / "out/site")
+    parser.add_argument("--replay", type=Path, metavar="HTML", default=REPLAY,
+                        help="the run.html that is shown (default: the last course's)")
+    given = parser.parse_args()
+    logging.basicConfig(format="site: %(message)s", level=logging.WARNING)
+    begun, out = time.monotonic(), given.out.resolve()
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix="site.", dir=out.parent) as folder:
+            made = Path(folder) / "site"
+            made.mkdir()
+            build_site(made, given.replay)
+            shutil.rmtree(out, ignore_errors=True)
+            made.rename(out)
+    except OSError as error:
+        print(f"site: {error.filename or out}: {error.strerror}", file=sys.stderr)
+        return 1
+    except (Abort, MkDocsException, SiteError, ValueError) as error:
+        print(f"site: {error}", file=sys.stderr)
+        return 1
+    print(f"{out}/index.html: {len(list(out.rglob('*.html')))} pages in "
+          f"{time.monotonic() - begun:.0f} s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
