@@ -1,5 +1,6 @@
 """`make site`: every link leads somewhere, no other host is asked, and both languages are whole."""
 
+import html
 import json
 import re
 import subprocess
@@ -15,7 +16,11 @@ TOOL = ROOT / "tools/site"
 sys.path.append(str(TOOL))
 
 from checking import faults  # noqa: E402
+from recording import bench, watched_controller  # noqa: E402
 from staging import Pages, _with_links, menu, repository_pages  # noqa: E402
+
+from bullet_sim.errors import PluginError  # noqa: E402
+from bullet_sim_ros.interface import documented  # noqa: E402
 
 OWN = "<!doctype html><p id='run'>a replay</p>"
 
@@ -67,6 +72,55 @@ def test_the_search_has_each_language_and_splits_chinese_into_words(site):
     words = {word for each in docs["zh"]["docs"] for word in each["text"].split("\u200b")}
     assert {"雷达", "里程计", "课程"} <= words
     assert any("odometry" in each["text"] for each in docs["en"]["docs"])
+    for language in docs:
+        (script,) = (site / language / "assets/javascripts/workers").glob("search.*.js")
+        assert "o<=t.length;o++)t.slice(s,o)in e" in script.read_text("utf-8")
+
+
+def page(site: Path, path: str) -> str:
+    """A built page's text without its tags."""
+    return html.unescape(re.sub(r"<[^>]+>", "", (site / path).read_text("utf-8")))
+
+
+def test_every_plugin_and_controller_has_a_page_with_an_example_that_was_loaded(site):
+    rows = {name: row for name, row in documented().items()
+            if name.endswith(".so") and row.status != "absent"}
+    types = {tag.name for tag in documented()["controllers"].tags.values()
+             if tag.status != "absent"}
+    assert len(rows) > 50 and len(types) > 20
+    for name in rows:
+        for language in ("en", "zh"):
+            text = page(site, f"{language}/reference/plugins/{Path(name).stem}.html")
+            assert re.search(rf'<plugin name="p" filename="{re.escape(name)}"', text), name
+            assert all(tag in text for tag in rows[name].tags), name
+    for name in types:
+        file = re.sub(r"\W", "_", name)
+        assert f"type: {name}" in page(site, f"en/reference/controllers/{file}.html")
+
+
+@pytest.mark.parametrize("path, row", [
+    ("plugins/libgazebo_ros_diff_drive", "wheelSeparation 0.34 m"),
+    ("plugins/libgazebo_ros_diff_drive", "robotNamespace the model's name"),
+    ("plugins/libgazebo_ros_diff_drive", "subscribes to /bot/cmd_vel geometry_msgs/Twist"),
+    ("plugins/libgazebo_ros_tricycle_drive", "wheelAcceleration 0 rad/s²"),
+    ("plugins/libgazebo_ros_imu", "bodyName required"),
+    ("plugins/libgazebo_ros_imu", "frameName the link's name"),
+    ("plugins/libgazebo_ros_kobuki", "wheel_diameter required m"),
+    ("plugins/libgazebo_ros_planar_move", "robotBaseFrame base_footprint"),
+    ("plugins/libgazebo_ros_velodyne_laser", "max_range no limit m"),
+    ("controllers/diff_drive_controller_DiffDriveController", "cmd_vel_timeout 0.5 s"),
+    ("controllers/effort_controllers_JointPositionController", "pid/p required"),
+    ("controllers/position_controllers_JointTrajectoryController",
+     "subscribes to /r/my_controller/command trajectory_msgs/JointTrajectory"),
+])
+def test_defaults_units_and_topics_are_those_of_the_code(site, path, row):
+    assert row in " ".join(page(site, f"en/reference/{path}.html").split())
+
+
+def test_an_example_that_does_not_load_is_an_error_with_its_reason():
+    with bench() as made, pytest.raises(PluginError, match=r"Controller: .*no joint.*'gone'"):
+        watched_controller("velocity_controllers/JointVelocityController",
+                           {"arm": {"joint": "gone"}}, made)
 
 
 @pytest.mark.parametrize("text, linked", [

@@ -22,7 +22,10 @@ from material.plugins.search import plugin as search
 from mkdocs.commands.build import build
 from mkdocs.config import load_config
 from mkdocs.exceptions import Abort, MkDocsException
+from reference import add_reference
 from staging import HERE, ROOT, Pages, repository_pages, stage
+
+from bullet_sim.errors import SimulationError
 
 NAMES = {"en": "ROS 1 driving courses", "zh": "ROS 1 小车课程"}
 REPLAY = ROOT / "out/course/run.html"
@@ -55,9 +58,25 @@ def short_words(text: bytes) -> list[str]:
     return found
 
 
+# Material's search looks for the words that a query is made of, but never for the whole query as a
+# word: of 里程计 it would search 里 alone, as another text has that word.
+WORDS, WHOLE = "o<t.length;o++)t.slice(s,o)in e", "o<=t.length;o++)t.slice(s,o)in e"
+
+
+def search_whole_words(folder: Path) -> None:
+    """Mend the search's script; SiteError if it is another one than that of the pinned version."""
+    (script,) = (folder / "assets/javascripts/workers").glob("search.*.min.js")
+    text = script.read_text("utf-8")
+    if text.count(WORDS) != 1:
+        raise SiteError(f"{script.name}: mkdocs-material has another search; see WORDS"
+                        f" in {__file__}")
+    script.write_text(text.replace(WORDS, WHOLE), "utf-8")
+
+
 def all_pages() -> Pages:
     """The repository's pages and the made ones."""
     pages = repository_pages()
+    add_reference(pages)
     pages.add("demo.md", *(text + FRAME for text in DEMO))
     return pages
 
@@ -71,8 +90,8 @@ def build_site(out: Path, replay: Path) -> None:
         config.theme["language"] = language
         config.plugins.on_startup(command="build", dirty=False)
         build(config)
-        for name in ("404.html", "sitemap.xml", "sitemap.xml.gz"):  # of a server's root alone
-            (out / language / name).unlink(missing_ok=True)
+        search_whole_words(out / language)
+        (out / language / "404.html").unlink()  # of a server's root alone
     shutil.rmtree(out / "pages")
     (out / "index.html").write_text(START, "utf-8")
     (out / "demo").mkdir()
@@ -101,7 +120,7 @@ def main() -> int:
     except OSError as error:
         print(f"site: {error.filename or out}: {error.strerror}", file=sys.stderr)
         return 1
-    except (Abort, MkDocsException, SiteError, ValueError) as error:
+    except (Abort, MkDocsException, SimulationError, SiteError, ValueError) as error:
         print(f"site: {error}", file=sys.stderr)
         return 1
     print(f"{out}/index.html: {len(list(out.rglob('*.html')))} pages in "
