@@ -27,7 +27,7 @@ from run_tests_files import (  # noqa: F401  hooks
 # Of a worker its controller has made them, of a file with a process of its own the run around it.
 if "PYTEST_XDIST_WORKER" not in os.environ and os.environ.get(MARK, "").count("/") < 2:
     runpy.run_path(str(ROOT / "src/sim/bullet_sim/src/bullet_sim/props.py"), run_name="__main__")
-    made = ["name_packages"]  # for after a `git pull`; takes 0.7 s
+    made = ["name_packages"]  # for after a `git pull`
     if (ROOT / "src/compat/turtlebot3_gazebo").is_dir():
         made.append("turtlebot3_worlds")
     subprocess.run([sys.executable, "-B", ROOT / "tools/makers", *made],

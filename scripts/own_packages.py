@@ -60,6 +60,8 @@ def arrange(src: Path) -> tuple[list[str], list[str]]:
     before = marked(src)
     paths = [*find_package_paths(str(src)), *before]
     theirs = names_of(src, [path for path in paths if not is_ours(path)])
+    if not theirs and not before:
+        return [], []
     ours = names_of(src, [path for path in paths if is_ours(path)])
     tables = Tables()
     for name in [name for name in theirs if tables.why_ours_stays(name)]:

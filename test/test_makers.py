@@ -61,6 +61,34 @@ def test_a_folder_that_cannot_be_made_is_one_line():
         len(done.stderr.splitlines()) == 1)
 
 
+def test_what_is_as_it_was_is_not_made_again(tmp_path):
+    kept = importlib.import_module("kept")
+    made, folder = tmp_path / "a.world", tmp_path / "made"
+    assert not kept.is_made("worlds", folder)
+    made.write_text("a")
+    kept.keep("worlds", [made, tmp_path], folder)
+    kept.keep("worlds", [made, tmp_path], folder)  # the folder has its own folder now
+    assert kept.is_made("worlds", folder)
+    made.write_text("ab")
+    assert not kept.is_made("worlds", folder)
+    kept.keep("worlds", [made, tmp_path], folder)
+    (tmp_path / "new").touch()
+    assert not kept.is_made("worlds", folder)
+    kept.keep("worlds", [made], folder)
+    made.unlink()
+    assert not kept.is_made("worlds", folder)
+    (folder / "worlds.json").write_text("[")
+    assert not kept.is_made("worlds", folder)
+
+
+@pytest.mark.parametrize("name", ["name_packages", "turtlebot3_worlds"])
+def test_what_setup_makes_each_time_is_left_out_the_second_time(name):
+    assert ran(name).returncode == 0
+    second = subprocess.run([sys.executable, "-X", "importtime", TOOL, name], text=True,
+                            capture_output=True, check=True)
+    assert "kept" in second.stderr and "numpy" not in second.stderr and "yaml" not in second.stderr
+
+
 @pytest.fixture
 def names(tmp_path, monkeypatch):
     """The maker of packages that are only a name, in a repository of one table."""

@@ -12,8 +12,8 @@ build_workspace() {
   (
     trap '' INT  # each would print a traceback; this shell ends after it
     python3 "$root/src/sim/bullet_sim/src/bullet_sim/props.py"  # as the build does; takes 0.1 s
-    [ ! -d "$root/tools/makers" ] || "$venv/bin/python3" -B "$root/tools/makers" name_packages >/dev/null || exit 1  # 0.2 s
-    [ ! -d "$root/src/compat/turtlebot3_gazebo" ] || "$venv/bin/python3" -B "$root/tools/makers" turtlebot3_worlds >/dev/null || exit 1  # 0.6 s
+    [ ! -d "$root/tools/makers" ] || "$venv/bin/python3" -B "$root/tools/makers" name_packages >/dev/null || exit 1
+    [ ! -d "$root/src/compat/turtlebot3_gazebo" ] || "$venv/bin/python3" -B "$root/tools/makers" turtlebot3_worlds >/dev/null || exit 1  # 0.1 s unless something has changed
   )
   told=$(trap '' INT; python3 "$root/scripts/own_packages.py" "$root/src" 2>&1 | translated) || { printf '%s\n' "$told" >&2; exit 1; }
   if grep -qs '^CPP_LESSONS:BOOL=ON' "$root/build/CMakeCache.txt"; then cpp=ON  # built once, so keep them up to date

@@ -79,6 +79,12 @@ def stale() -> list[Path]:
             if folder / "package.xml" not in known]
 
 
+def sources() -> list[Path]:
+    """The tables, and the folders in which a table or a stale package would come up."""
+    folders = [table.parent / "names" for table in tables()]
+    return [*(ROOT / folder for folder in FOLDERS), *tables(), *folders]
+
+
 def tables() -> list[Path]:
     """Those that are there: a learner may have removed a folder of ours."""
     return [table for folder in FOLDERS if (table := ROOT / folder / "names.yaml").is_file()]

@@ -24,6 +24,11 @@ def files() -> dict[str, bytes]:
             for folder, inside in made.items() for path, data in inside.items()}
 
 
+def sources() -> list[Path]:
+    """What is copied, and the folders in which there may be more of it."""
+    return [path for path in (LESSON, *LESSON.rglob("*")) if "__pycache__" not in path.parts]
+
+
 def line_course() -> dict[str, bytes]:
     """The course of the line-follower tutorial, where upstream's package has it too."""
     return {str(path.relative_to(LESSON)): path.read_bytes()
