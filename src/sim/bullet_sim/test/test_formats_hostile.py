@@ -159,4 +159,4 @@ def test_a_world_takes_a_time_in_proportion_to_its_size(tmp_path, part, around):
 
     seconds(10)  # what is read only once
     # 4 times in proportion, 16 by the square. Once more where another process was in the way.
-    assert any(seconds(800) < 8 * max(seconds(200), 0.1) for _ in range(3))
+    assert any(seconds(400) < 8 * max(seconds(100), 0.03) for _ in range(3))
