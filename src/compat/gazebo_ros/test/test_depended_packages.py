@@ -1,7 +1,10 @@
 """Packages and nodes that robots of older releases name: rospack and catkin find them."""
 
 import os
+import signal
+import socket
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
@@ -13,6 +16,13 @@ NAMES = (
     "gazebo_ros_pkgs", "controller_manager", "controller_manager_msgs", "ros_control",
     "ros_controllers", "joint_state_controller", "effort_controllers", "position_controllers",
     "velocity_controllers", "diff_drive_controller", "joint_trajectory_controller", "xacro")
+
+ROBOT = """<launch>
+  <param name="robot_description"
+         value="&lt;robot name='one'&gt;&lt;link name='a'/&gt;&lt;/robot&gt;"/>
+  <node name="robot_state_publisher" pkg="robot_state_publisher" type="robot_state_publisher"
+        output="screen"/>
+</launch>"""
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -48,3 +58,34 @@ def test_robot_state_publisher_starts_by_both_its_names(name):
                            check=False)
     assert "master URI [no address]" in ended.stderr  # it is roscpp that complains
     assert ("deprecated" in ended.stderr) == (name == "state_publisher")
+
+
+def test_a_second_robot_state_publisher_ends_and_the_first_notices_nothing(tmp_path):
+    # course, then `roslaunch turtlebot3_gazebo turtlebot3_gazebo_rviz.launch`: roscpp ends both
+    robot = tmp_path / "robot.launch"
+    robot.write_text(ROBOT)
+    with socket.socket() as free:
+        free.bind(("localhost", 0))
+        port = str(free.getsockname()[1])
+    there = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
+    first = subprocess.Popen(["roslaunch", "-p", port, robot], env=there, text=True,
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    try:
+        until = time.monotonic() + 60
+        while "/robot_state_publisher" not in nodes(there):
+            assert time.monotonic() < until
+        second = subprocess.run(["roslaunch", robot], env=there, capture_output=True, text=True,
+                                timeout=60, check=False)
+        assert "robot_state_publisher runs already on this master (/robot_state_publisher)" in \
+            second.stderr
+        assert "Shutdown request" not in second.stderr
+        assert "/robot_state_publisher" in nodes(there)
+    finally:
+        first.send_signal(signal.SIGINT)
+        told, _ = first.communicate(timeout=60)
+    assert "Shutdown request" not in told
+
+
+def nodes(environment):
+    return subprocess.run(["rosnode", "list"], env=environment, capture_output=True, text=True,
+                          timeout=60, check=False).stdout.split()
