@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """An action client: send a goal, print the progress.  动作客户端：发送目标，查看进度和结果。"""
 
+import sys
+
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalStatus
@@ -21,11 +23,14 @@ def done_callback(state, result):
 
 def main():
     rospy.init_node("action_client", anonymous=True)
+    num = rospy.get_param("~num", 10)
+    if type(num) is not int:
+        sys.exit(f"action02_client.py: ~num must be a whole number, not {num!r}  应为整数")
     client = actionlib.SimpleActionClient("addInts", AddIntsAction)
     rospy.loginfo("waiting for addInts")
     if not client.wait_for_server():
         return  # Ctrl-C while waiting  等待时按下 Ctrl-C
-    goal = AddIntsGoal(num=rospy.get_param("~num", 10))
+    goal = AddIntsGoal(num=num)
     client.send_goal(goal, done_callback, active_callback, feedback_callback)
     client.wait_for_result()
 

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """queue_size with a slow subscriber: which messages are dropped.  订阅者太慢时，队列丢掉旧消息。"""
 
+import sys
+
 import rospy
 from std_msgs.msg import Int32
 
@@ -15,6 +17,8 @@ def number_callback(message):
 def main():
     rospy.init_node("queue")
     size = rospy.get_param("~size", 1)
+    if type(size) is not int or size < 1:
+        sys.exit(f"03queue.py: ~size must be a whole number from 1 on, not {size!r}  应为正整数")
     rospy.Subscriber("number", Int32, number_callback, queue_size=size)
     publisher = rospy.Publisher("number", Int32, queue_size=100)
     while publisher.get_num_connections() == 0:  # earlier messages would be lost  否则会丢

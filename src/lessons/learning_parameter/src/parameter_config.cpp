@@ -15,7 +15,12 @@ bool showBackground() {
   std::vector<int> values;
   for (const std::string& name : NAMES) {
     int value;
-    if (!ros::param::get(name, value)) {
+    if (!ros::param::get(name, value) && ros::param::has(name)) {  // of another type  类型不对
+      std::cerr << "parameter_config: parameter " << name << " must be a whole number; type: "
+                << "rosparam set " << name << " 255  应为整数\n";
+      return false;
+    }
+    if (!ros::param::has(name)) {
       std::cerr << "parameter_config: no parameter '" << name << "': turtlesim sets it as it "
                 << "starts; end it if it runs, and type rosrun turtlesim turtlesim_node  "
                 << "请启动（或重启）turtlesim\n";
