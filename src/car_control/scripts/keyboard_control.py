@@ -63,7 +63,8 @@ def open_keys(in_terminal):
     """run(turn) of the terminal or of a new window; exits with one line if there is neither."""
     if in_terminal:
         if not sys.stdin.isatty():
-            sys.exit(f"keyboard_control: no terminal to read keys from; type: {IN_TERMINAL}")
+            sys.exit("keyboard_control: no terminal to read keys from. Type it in a terminal, "
+                     f"without <, | or & beside it; or use the page's tab Drive: {PAGE}")
         return lambda turn: run_terminal(sys.stdin.fileno(), turn)
     try:
         key_window = importlib.import_module("car_control.key_window")  # imports Tk

@@ -146,7 +146,8 @@ class KeyboardTerminal(unittest.TestCase):
                               capture_output=True, timeout=LIMIT, check=False)
         self.assertEqual(done.returncode, 1)
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
-        self.assertIn("no terminal to read keys from", done.stderr)
+        self.assertIn("no terminal to read keys from. Type it in a terminal,", done.stderr)
+        self.assertNotIn("--terminal", done.stderr)  # the very command that was typed
 
 
 FOLLOWER = "/lane_follow"

@@ -1,11 +1,14 @@
 """Keys held, told from a window's events and a terminal's characters; `xset r off` is there."""
 
+import logging
 import math
 import os
+import pty
 import subprocess
+import sys
 
 import pytest
-from car_control.key_terminal import keys_in
+from car_control.key_terminal import keys_in, run_terminal
 from car_control.keys import (
     FIRST_WAIT,
     RELEASE_WAIT,
@@ -107,3 +110,27 @@ def test_xset_is_there_and_says_that_it_has_no_screen():
                            timeout=60, check=False)
     assert (ended.returncode, ended.stdout) == (1, "")
     assert "unable to open display" in ended.stderr
+
+
+def test_a_log_line_begins_on_a_line_of_its_own_and_the_status_comes_below(capsys):
+    # rospy writes it to the terminal while the status line is there
+    keyboard, terminal = pty.openpty()
+    log, stream = logging.getLogger("rosout"), logging.StreamHandler(sys.stdout)
+    log.addHandler(stream)
+    turns = iter([lambda: None, lambda: log.warning("Nobody listens to /motor_output yet."),
+                  lambda: None])
+
+    def turn(_keys):
+        act = next(turns, None)
+        return act and (act() or "the car stands")
+
+    try:
+        run_terminal(terminal, turn)
+    finally:
+        log.removeHandler(stream)
+        os.close(keyboard)
+        os.close(terminal)
+    overwritten = [line.rpartition("\r")[2].rstrip()
+                   for line in capsys.readouterr().out.split("\n")]
+    assert overwritten[2:5] == ["Nobody listens to /motor_output yet.", "the car stands", ""]
+    assert not log.filters

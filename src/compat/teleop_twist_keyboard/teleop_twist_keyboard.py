@@ -172,7 +172,9 @@ def say(*lines: str) -> None:
 
 def main() -> None:
     if not sys.stdin.isatty():
-        sys.exit("teleop_twist_keyboard: no terminal to read keys from; start it in a terminal")
+        sys.exit("teleop_twist_keyboard: no terminal to read keys from. Type it in a terminal, "
+                 "without <, | or & beside it; or use the page's tab Drive: "
+                 "roslaunch sim_viewer viewer.launch control:=true")  # fmt: skip
     rospy.init_node("teleop_twist_keyboard", disable_signals=True)
     drive = KeyedSpeeds(read_number("speed", 0.5), read_number("turn", 1.0),
                         read_number("speed_limit", 1000.0), read_number("turn_limit", 1000.0))

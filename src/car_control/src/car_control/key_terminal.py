@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import logging
 import os
 import re
 import select
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from node_basics.ending import single_keys
 
@@ -26,14 +28,56 @@ def keys_in(text: str) -> str:
     return ESCAPE.sub(lambda found: ARROWS.get(found[1] or "", ""), text).lower()
 
 
+class StatusLine(logging.Handler):
+    """A line that is drawn in place; rospy's log lines come above it, on lines of their own."""
+
+    WIDTH = 40
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._shown = ""
+
+    def show(self, status: str) -> None:
+        """Draw it, if it has changed."""
+        if status != self._shown:
+            self._shown = status
+            self._draw(status)
+
+    def emit(self, _record: logging.LogRecord) -> None:
+        """Draw it again: the other handlers have written a log line."""
+        self._draw(self._shown)
+
+    def make_room(self, _record: logging.LogRecord) -> bool:
+        """A filter that lets all pass: it empties the line before a log line is written."""
+        self._draw("")
+        print(end="\r", flush=True)
+        return True
+
+    def _draw(self, status: str) -> None:
+        print(f"\r{status:{self.WIDTH}}", end="", flush=True)
+
+
+@contextlib.contextmanager
+def below_the_log(line: StatusLine) -> Iterator[None]:
+    """Keep the line below rospy's log lines, meanwhile."""
+    log = logging.getLogger("rosout")
+    log.addFilter(line.make_room)
+    log.addHandler(line)
+    try:
+        yield
+    finally:
+        log.removeHandler(line)
+        log.removeFilter(line.make_room)
+
+
 def run_terminal(terminal: int, turn: Callable[[frozenset[str]], str | None]) -> None:
     """Call `turn` repeatedly with the keys held, and show what it returns in one line.
 
     Ends with Q, with the terminal, or when `turn` returns None.
     """
-    keys, shown = TerminalKeys(), ""
+    keys, line = TerminalKeys(), StatusLine()
     print(TEXT, flush=True)
-    with single_keys(terminal):
+    with single_keys(terminal), below_the_log(line):
         while True:
             text = _typed(terminal)
             typed = keys_in(text or "")
@@ -45,9 +89,7 @@ def run_terminal(terminal: int, turn: Callable[[frozenset[str]], str | None]) ->
             status = turn(keys.held(time.monotonic()))
             if status is None or text is None or QUIT_KEY in typed:
                 break
-            if status != shown:
-                shown = status
-                print(f"\r{status:40}", end="", flush=True)
+            line.show(status)
     print()
 
 

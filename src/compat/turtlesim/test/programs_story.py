@@ -130,7 +130,9 @@ class TeleopStory(unittest.TestCase):
         self.assertIn(text, done.stderr)
 
     def test_without_a_terminal_one_line(self):
-        self.assert_one_line("no terminal to read keys from", stdin=subprocess.DEVNULL)
+        # Not the very command that was typed.
+        self.assert_one_line("without <, | or & beside it; or without keys: rostopic pub -1",
+                             stdin=subprocess.DEVNULL)
 
     def test_a_scale_that_is_no_number_is_one_line(self):
         rospy.set_param("/scale_linear", "fast")
