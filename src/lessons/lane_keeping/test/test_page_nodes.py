@@ -110,9 +110,15 @@ def test_the_verbs_are_the_pages(verb, command):
     assert done.stdout.splitlines()[-2 if "Leaving" in done.stdout else -1].endswith(command)
 
 
+def test_make_shows_what_a_command_says_and_not_the_command():
+    done = subprocess.run(["make", "--no-print-directory", "-C", str(PACKAGE), "bridge"],
+                          capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("No bridge is needed") and done.stdout.count("\n") == 1
+
+
 @pytest.mark.parametrize(("screen", "program"), [
     (":0", "rviz"), ("", "rosrun sim_viewer rviz_page")])
 def test_without_a_screen_the_browser_shows_what_rviz_would(screen, program):
     done = subprocess.run(["make", "-n", "-C", str(PACKAGE), "rv"], capture_output=True, text=True,
                           env={"PATH": os.defpath, "DISPLAY": screen})
-    assert f"&& {program} -d {PACKAGE}/config/lane.rviz\n" in done.stdout, done.stderr
+    assert f"; {program} -d {PACKAGE}/config/lane.rviz\n" in done.stdout, done.stderr
