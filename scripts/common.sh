@@ -63,6 +63,24 @@ if os.getpgrp() == os.getsid(0):
     os.kill(int(sys.argv[1]), 1)' $$ < /dev/tty > /dev/null 2>&1 &
 }
 
+# Refuses a name that the program would refuse after setup, which may take minutes: KIND VARIABLE NAME, and the known ones;
+# without any the program looks.
+known() {
+  local kind=$1 variable=$2 name=$3 there
+  shift 3
+  there=$(printf ', %s' "$@"); there=${there#, }
+  [ -z "$there" ] || [[ ", $there, " == *", $name, "* ]] || fail $"no $kind '$name' ($variable=); there are: $there"
+}
+# The words between quotation marks from a file's line with this to one with that.
+quoted_words() { sed -n "\|$2|,\|$3|p" "$root/$1" 2> /dev/null | grep -oE '^ *"[a-z_]+"|, "[a-z_]+"' | tr -d ', "'; }
+# A key's value in a course's file.
+course_key() { sed -n "s/^$2: *\([^ #]*\).*/\1/p" "$root/src/evaluation/courses/$1.yaml" 2> /dev/null; }
+followers() {
+  local package pattern
+  package=$(course_key "$1" follower_package) pattern=$(course_key "$1" followers)
+  (cd "$root"/src/"$package"/"${pattern%/*}" 2> /dev/null && grep -lF -e "$(course_key "$1" drives_by)" ${pattern##*/})
+}
+
 # Sets up what a trial with these arguments needs.
 set_up_trial() {
   local options=()
@@ -76,7 +94,16 @@ take_turn() {
   local lock=${TMPDIR:-/tmp}/course_run-$(id -u).lock
   exec {turn}< /dev/null  # where the file cannot be written, or leads elsewhere: without a turn
   [ -L "$lock" ] || { exec {turn}<> "$lock"; } 2> /dev/null || return 0
-  flock -w 300 "$turn" || true
+  if ! flock -n "$turn"; then
+    local number= name= words=() age
+    read -r number < "$lock" || true
+    [ -z "$number" ] || { mapfile -d '' -t words < "/proc/$number/cmdline"; } 2> /dev/null || true
+    number=${number:-?} name=${words[1]:-?} age=$(($(date +%s) - $(stat -c %Y "$lock")))
+    name=${name##*/}
+    say $"Waiting: $name (process $number) has been starting its simulator for $age s" >&2
+    flock -w 300 "$turn" || return 0
+  fi
+  printf '%s\n' $$ > "$lock"
 }
 
 # Waits for the simulator of this process, and ends the turn; fails if the process ends before.

@@ -3,10 +3,11 @@
 #
 #   scripts/help.sh
 #   scripts/help.sh --no-command WORD          says that make has no such command, and which is meant
+#   scripts/help.sh --no-command-of MAKEFILE WORD  the same of another Makefile's commands
 #   scripts/help.sh --no-option COMMAND WORD...   the same of an option
 #   scripts/help.sh --no-switch NAME=...       says what these options may be
 #   scripts/help.sh --no-number COMMAND NAME=VALUE...  the same of the first that is no number, or 0 where that cannot
-#                                                      be, if any; all four for the Makefile
+#                                                      be, if any; all of these for the Makefiles
 on_any_linux=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -24,6 +25,12 @@ meant() {
   near=$(python3 -c 'import difflib, sys; print(*difflib.get_close_matches(sys.argv[1], sys.argv[2:], 1))' "$@" 2>/dev/null) || true
   [ -z "$near" ] || printf $" is %s meant?" "$near"
 }
+# Says that make has no such command, and which of a Makefile's is meant.
+no_command() {
+  local verbs
+  mapfile -t verbs < <(sed -n 's/^\([a-z-]*\):.*## .*/\1/p' "$1")
+  say $"make has no command $2;""$(meant "$2" "${verbs[@]}")"$" \`make\` alone lists them"
+}
 case "${1:-}" in
   --no-command)
     lesson=src/lessons/lane_keeping
@@ -31,8 +38,8 @@ case "${1:-}" in
       say $"make $2 is a command of the lesson $lesson; type: make -C $lesson $2"
       exit
     fi
-    mapfile -t verbs < <(sed -n 's/^\([a-z-]*\):.*## .*/\1/p' "$root/Makefile")
-    say $"make has no command $2;""$(meant "$2" "${verbs[@]}")"$" \`make\` alone lists them" ;;
+    no_command "$root/Makefile" "$2" ;;
+  --no-command-of) no_command "$2" "$3" ;;
   --no-option)
     mapfile -t options < <(sed -n "/^${2%% *}:/,/^$/p" "$root/Makefile" | grep -oE '\$\([A-Z_]+\)' | tr -d '$()' | sed 's/^WHERE$/WORKERS\nSCHEDULER/' | sort -u)
     verb=$2 names=${*:3}
@@ -40,14 +47,14 @@ case "${1:-}" in
   --no-switch) names=${*:2}; say $"$names: write 1 or 0, or leave it out" ;;
   --no-number)
     for given in "${@:3}"; do
+      if [[ $given =~ =(-[0-9.]*|[0.]+)$ && "$2 $given" =~ \ (DURATION|GOALS|LAPS|PACE|WORKERS)=|^(avoid|autorace)\ SEEDS= ]]; then
+        say $"$given: write a number above 0, or leave it out"; break
+      fi
       case $given in
         DURATION=* | HOURS=* | MEMORY_S=* | MINUTES=* | PACE=*)
           [[ $given =~ ^[A-Z_]+=[0-9]+(\.[0-9]+)?$ ]] || { say $"$given: write a number, such as 2 or 0.5, or leave it out"; break; } ;;
         *) [[ $given =~ ^[A-Z_]+=[0-9]+$ ]] || { say $"$given: write a whole number, or leave it out"; break; } ;;
       esac
-      if [[ $given =~ =[0.]+$ && "$2 $given" =~ \ (DURATION|GOALS|LAPS|PACE|WORKERS)=|^(avoid|autorace)\ SEEDS= ]]; then
-        say $"$given: write a number above 0, or leave it out"; break
-      fi
     done ;;
   *)
     version=$(our_version)

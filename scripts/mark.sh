@@ -9,6 +9,14 @@
 failure_code=2 stays_root=yes
 case " $* " in *" --no"*) stays_root= ;; esac
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+words=("$@")
+for at in "${!words[@]}"; do
+  value=${words[at + 1]:-}
+  case "${words[at]} $value" in
+    "--course course" | "--course race" | "--course lane") ;;
+    "--course "*) fail $"--course (COURSE=) must be one of course, race, lane, is '$value'" ;;
+  esac
+done
 set_up_trial "$@"
 enter_workspace
 end_with_terminal

@@ -21,6 +21,23 @@
 # Exit code 1: it was not so; 2: it could not run. (make ends with 2 for both, and prints the code: "Error 1".)
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+words=("$@") course=course
+for at in "${!words[@]}"; do
+  value=${words[at + 1]:-}
+  case "$self ${words[at]}" in
+    "course --course") course=$value ;;
+    "course --follower")
+      [[ " $* " == *" --launch "* ]] || known follower FOLLOWER "$value" $(followers "$course") ;;
+    "course --camera")
+      [[ $value =~ ^[1-9][0-9]{0,4}x[1-9][0-9]{0,4}$ ]] ||
+        fail $"--camera (CAMERA=) must be WIDTHxHEIGHT in px, as 640x480; got '$value'" ;;
+    "track --scene")
+      known scene SCENE "$value" $(quoted_words src/lessons/ai_robot_tracking/src/ai_robot_tracking/scenes/scene.py "KINDS = (" ")") ;;
+    "autorace --mission") known mission MISSION "$value" $(quoted_words src/evaluation/src/evaluation/autorace.py "^TASKS = {" "^}") all ;;
+    "chaos --course") known course COURSE "$value" course race lane_empty ;;
+    "soak --course") known course COURSE "$value" course race navigation ;;
+  esac
+done
 case $self in
   fuzz | chaos | soak | mutants) "$root/scripts/setup.sh" --tests || exit 2; program=test/$self/$self.py ;;
   bench) "$root/scripts/setup.sh" --learning || exit 2; program=src/sim_bench/scripts/bench.py ;;

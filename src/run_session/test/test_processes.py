@@ -1,8 +1,10 @@
 """Runs that begin together take turns; a child that is ended takes all with it that it started."""
 
 import os
+import re
 import subprocess
 import time
+from pathlib import Path
 
 import psutil
 import pytest
@@ -12,6 +14,7 @@ from run_session.master import take_turn
 from run_session.processes import Family, end_with_parent, strip_terminal_codes
 
 pytestmark = pytest.mark.processes
+ROOT = Path(__file__).resolve().parents[3]
 # Ends at Ctrl-C; what it has started, in a session of its own, does not.
 PARENT = ("import subprocess, sys, time; child = subprocess.Popen(['sh', '-c', 'trap \"\" INT; "
           "sleep 1000'], start_new_session=True); print(child.pid, flush=True); time.sleep(1000)")
@@ -45,6 +48,26 @@ def test_a_turn_is_waited_for_no_longer_than_the_limit(tmp_path):
         take_turn(path, 0.1)
     held.close()
     take_turn(path, 0.1).close()
+
+
+def test_who_waits_for_its_turn_says_at_once_for_whom(tmp_path, capfd):
+    path = tmp_path / f"course_run-{os.getuid()}.lock"
+    held = take_turn(path)
+    os.utime(path, (time.time() - 70,) * 2)
+    with pytest.raises(RunError):
+        take_turn(path, 0.1)
+    said = capfd.readouterr().err
+    assert re.fullmatch(rf"Waiting: \S+ \(process {os.getpid()}\) has been starting its "
+                        r"simulator for 7\d s\n", said)
+    waits = subprocess.Popen(
+        ["bash", "-c", ". scripts/common.sh; take_turn", "scripts/viewer.sh"],
+        cwd=ROOT, env=os.environ | {"TMPDIR": str(tmp_path)}, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert waits.stderr.readline().startswith(said.partition(" for ")[0])
+    held.close()
+    waits.communicate(timeout=60)
+    assert waits.returncode == 0
+    assert path.read_text() == f"{waits.pid}\n"
 
 
 def test_a_lock_that_leads_elsewhere_is_refused(tmp_path):

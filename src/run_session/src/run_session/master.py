@@ -9,6 +9,7 @@ import contextlib
 import fcntl
 import os
 import socket
+import sys
 import time
 import xmlrpc.client
 from collections.abc import Iterable
@@ -88,7 +89,7 @@ TURN_PERIOD = 0.05  # s, wall, between two attempts
 
 
 def take_turn(path: Path, limit: float = TURN_LIMIT) -> IO:
-    """Lock the file and return it: closing it releases the lock.
+    """Lock the file and return it: closing it releases the lock. It has the holder's number.
 
     RunError if it is not released within `limit`, s, wall, or if it is another user's.
     """
@@ -98,17 +99,32 @@ def take_turn(path: Path, limit: float = TURN_LIMIT) -> IO:
         raise RunError(f"{path}: {error.strerror}: name a folder of your own for temporary files,"
                        " such as: export TMPDIR=~/tmp") from error
     file = os.fdopen(number, "r+b")
-    until = time.monotonic() + limit
+    until, told = time.monotonic() + limit, False
     while True:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            file.truncate(0)
+            file.write(b"%d\n" % os.getpid())
+            file.flush()
             return file
         except BlockingIOError:
+            if not told:
+                told = True
+                print(_waiting(file), file=sys.stderr, flush=True)
             if time.monotonic() > until:
                 file.close()
                 raise RunError(f"{path} is held by another run that starts its roscore for more"
                                f" than {limit:.0f} s: end it, then run this again") from None
             time.sleep(TURN_PERIOD)
+
+
+def _waiting(file: IO) -> str:
+    """Whose turn it is, and since when (take_turn in scripts/common.sh says the same)."""
+    number, name = file.read(20).decode(errors="replace").strip() or "?", "?"
+    with contextlib.suppress(psutil.Error, ValueError, IndexError):  # it has just ended
+        name = Path(psutil.Process(int(number)).cmdline()[1]).name
+    age = max(0, int(time.time() - os.fstat(file.fileno()).st_mtime))
+    return f"Waiting: {name} (process {number}) has been starting its simulator for {age} s"
 
 
 USUAL_PORT = 11311
