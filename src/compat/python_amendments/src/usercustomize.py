@@ -8,6 +8,7 @@ Programs of ours print in the language of the locale, and end without a tracebac
 the reader of their output has ended.
 """
 
+import _signal  # built in; signal takes as long as all these
 import atexit
 import collections
 import os
@@ -15,6 +16,11 @@ import sys
 import time
 from importlib import import_module
 from importlib.machinery import PathFinder
+
+INTERRUPTED = _signal.getsignal(_signal.SIGINT)
+if INTERRUPTED is _signal.default_int_handler:  # not ignored, as by a job in the background
+    # While this file is loaded, of which Python's own would show a traceback.
+    _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
 
 # A module, and what amends it after its import: files and functions of python_amendments.
 AMENDMENTS = {
@@ -32,7 +38,7 @@ AMENDMENTS = {
     "rospy.impl.tcpros_pubsub": ["node_end.amend_publishing"],
     "rospy.impl.tcpros_service": ["waiting.amend_services"],
     "rospy.topics": ["waiting.amend_topics", "unheard.amend_publishers"],
-    "tf2_ros.buffer": ["waiting.amend_frames"],
+    "tf2_ros.buffer": ["waiting.amend_frames", "node_end.amend_lookups"],
     "tkinter": ["no_screen.amend_tkinter"],
     "yaml": ["old_names.amend_yaml"],
 }
@@ -178,9 +184,13 @@ def is_unread():
     return drop_unread_output()
 
 
-choose_language()
-end_quietly()
-sys.meta_path.insert(0, Watch)
-watch_standard()
+try:
+    choose_language()
+    end_quietly()
+    sys.meta_path.insert(0, Watch)
+    watch_standard()
+finally:
+    if INTERRUPTED is _signal.default_int_handler:
+        _signal.signal(_signal.SIGINT, INTERRUPTED)
 if __name__ == "usercustomize":
     run_hidden()

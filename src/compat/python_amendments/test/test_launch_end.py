@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import time
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -19,6 +20,7 @@ from python_amendments.launch_end import amend_loader, amend_packages
 pytestmark = pytest.mark.processes
 
 LIMIT = 60.0  # s
+AMENDMENTS = Path(__file__).parents[1] / "src"
 GUARD = "/share/bullet_sim_ros/scripts/unless_running true"
 
 
@@ -61,6 +63,28 @@ def test_ctrl_c_while_a_param_is_computed_is_no_traceback(tmp_path):
     finally:
         started.kill()
         started.wait()
+
+
+@pytest.mark.parametrize(("handler", "code"), [
+    (signal.default_int_handler, -signal.SIGINT), (signal.SIG_IGN, 0)])  # in a shell 130
+def test_ctrl_c_while_python_starts_is_no_traceback(tmp_path, handler, code):
+    (tmp_path / "terminal_language").mkdir()
+    (tmp_path / "terminal_language/__init__.py").touch()
+    (tmp_path / "terminal_language/wanted.py").write_text(
+        "import os, signal\ndef start():\n    os.kill(os.getpid(), signal.SIGINT)\n"
+        "def is_ours(_words):\n    return True\n")
+    done = subprocess.run(
+        [sys.executable, "-c", ""], text=True, capture_output=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, handler),
+        env=os.environ | {"LANG": "zh_CN.UTF-8", "PYTHONPATH": f"{tmp_path}:{AMENDMENTS}"})
+    assert (done.returncode, done.stderr) == (code, "")
+
+
+def test_a_program_gets_pythons_own_ctrl_c():
+    done = subprocess.run(
+        [sys.executable, "-c", "import signal; print(signal.getsignal(signal.SIGINT).__name__)"],
+        text=True, capture_output=True, preexec_fn=by_hand, check=True)
+    assert done.stdout == "default_int_handler\n"
 
 
 def by_hand():

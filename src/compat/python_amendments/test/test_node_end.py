@@ -24,6 +24,20 @@ rospy.on_shutdown(lambda: print(rospy.get_param("/of_a_hook", "second")))
 rospy.spin()
 print("ended")
 """
+AWAITS = """
+import time, rospy, tf2_ros
+rospy.rostime.set_rostime_initialized(True)
+rospy.core._shutdown_flag = True
+begun, now, long = time.monotonic(), rospy.Time(0), rospy.Duration(30.0)
+buffer = tf2_ros.Buffer(debug=False)
+print(buffer.can_transform("a", "b", now, long),
+      buffer.can_transform("a", "b", now, long, True)[0],
+      buffer.can_transform_full("a", now, "b", now, "c", timeout=long, return_debug_tuple=True)[0])
+try:
+    buffer.lookup_transform("a", "b", now, long)
+except tf2_ros.LookupException:
+    print(time.monotonic() - begun < 10)
+"""
 
 
 class Master(ThreadingMixIn, SimpleXMLRPCServer):
@@ -147,3 +161,10 @@ def test_a_hook_may_publish_in_the_middle_of_a_publish():
         with lock:
             assert lock.acquire(blocking=False)
             lock.release()
+
+
+def test_no_frame_is_awaited_after_the_nodes_end():
+    # by demo04_sub.py for 3 s
+    done = subprocess.run([sys.executable, "-c", AWAITS], capture_output=True, text=True,
+                          timeout=LIMIT)
+    assert (done.stdout, done.stderr) == ("False False False\nTrue\n", "")

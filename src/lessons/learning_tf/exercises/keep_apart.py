@@ -35,7 +35,7 @@ def main():
             publisher.publish(follow(target.transform.translation.x,
                                      target.transform.translation.y))
         except tf2_ros.TransformException as error:
-            rospy.logwarn_throttle(1.0, f"not yet: {error}")
+            rospy.logwarn_throttle(10.0, f"not yet: {error}")
         rate.sleep()
 
 

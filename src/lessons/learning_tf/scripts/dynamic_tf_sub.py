@@ -23,7 +23,7 @@ def main():
             point = buffer.transform(ahead, "world").point
             rospy.loginfo("in world: %.2f, %.2f", point.x, point.y)
         except tf2_ros.TransformException as error:
-            rospy.logwarn("not yet: %s", error)
+            rospy.logwarn_throttle(10.0, f"not yet: {error}")
         rate.sleep()
 
 

@@ -25,7 +25,7 @@ def main():
             point = buffer.transform(point_in_son1, "son2").point
             rospy.loginfo("the point in son2: %.2f, %.2f, %.2f", point.x, point.y, point.z)
         except tf2_ros.TransformException as error:
-            rospy.logwarn("not yet: %s", error)
+            rospy.logwarn_throttle(10.0, f"not yet: {error}")
         rate.sleep()
 
 

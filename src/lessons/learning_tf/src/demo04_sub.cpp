@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
       command.angular.z = TURN_GAIN * std::atan2(target.y, target.x);
       publisher.publish(command);
     } catch (const tf2::TransformException& error) {
-      ROS_WARN_THROTTLE(1.0, "not yet: %s", error.what());
+      ROS_WARN_THROTTLE(10.0, "not yet: %s", error.what());
     }
     rate.sleep();
   }

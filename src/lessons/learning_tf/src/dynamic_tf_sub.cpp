@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
       geometry_msgs::Point point = buffer.transform(ahead, "world").point;
       ROS_INFO("in world: %.2f, %.2f", point.x, point.y);
     } catch (const tf2::TransformException& error) {
-      ROS_WARN("not yet: %s", error.what());
+      ROS_WARN_THROTTLE(10.0, "not yet: %s", error.what());
     }
     rate.sleep();
   }

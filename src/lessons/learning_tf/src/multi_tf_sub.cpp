@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
       geometry_msgs::Point point = buffer.transform(in_son1, "son2").point;
       ROS_INFO("the point in son2: %.2f, %.2f, %.2f", point.x, point.y, point.z);
     } catch (const tf2::TransformException& error) {
-      ROS_WARN("not yet: %s", error.what());
+      ROS_WARN_THROTTLE(10.0, "not yet: %s", error.what());
     }
     rate.sleep();
   }

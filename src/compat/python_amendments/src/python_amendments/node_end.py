@@ -4,6 +4,7 @@ rospy ends a node in the signal's handler, in the thread that the signal interru
 for there must not be held by the same thread.
 """
 
+import functools
 import signal
 import threading
 import time
@@ -79,3 +80,35 @@ def amend_registration(registration):
 def amend_publishing(tcpros_pubsub):
     """Let a hook stop the robot in the middle of a publish(); rospy.impl.tcpros_pubsub."""
     tcpros_pubsub.threading = SimpleNamespace(**vars(threading) | {"Lock": threading.RLock})
+
+
+class _Ended(Exception):
+    """The node has ended in the middle of a sleep."""
+
+
+def amend_lookups(buffers):
+    """Let a frame be awaited no longer than the node runs; the module tf2_ros.buffer.
+
+    Where no simulator publishes a time, rospy's sleep goes on after the node's end.
+    """
+    rospy = buffers.rospy
+
+    def sleep(duration):
+        if rospy.is_shutdown():
+            raise _Ended
+        rospy.sleep(duration)
+
+    def ending(look):
+        @functools.wraps(look)
+        def can_transform(buffer, *words, **options):
+            try:
+                return look(buffer, *words, **options)
+            except _Ended:
+                debug = options.get("return_debug_tuple", words and words[-1] is True)
+                return (False, "the node has ended") if debug else False
+
+        return can_transform
+
+    buffers.rospy = SimpleNamespace(**vars(rospy) | {"sleep": sleep})
+    for name in ("can_transform", "can_transform_full"):
+        setattr(buffers.Buffer, name, ending(getattr(buffers.Buffer, name)))
