@@ -16,6 +16,7 @@ import cv2
 import cv_bridge
 import rospy
 from geometry_msgs.msg import Twist
+from rospy.client import load_command_line_node_params
 from sensor_msgs.msg import Image
 from std_msgs.msg import Bool
 
@@ -34,14 +35,19 @@ PAGE = {  # the page's numbers; parameters of these names replace them  教程�
 def read_parameters():
     """The page's numbers; the launch file's ~file and _NAME:=VALUE replace them.  读参数"""
     given = rospy.get_param("~", {})
-    if given:
-        rospy.delete_param("~")  # they are for one run  只对这一次运行有效
+    for name in load_command_line_node_params(sys.argv):
+        rospy.delete_param(f"~{name}")  # _NAME:=VALUE is for one run  只对这一次运行有效
     try:
-        given = given.pop("file", {}).get("visual_tracker", {}) | given
+        file = given.pop("file", {"visual_tracker": {}})
+        if "visual_tracker" not in file:
+            rospy.logwarn("the file of parameters has no section visual_tracker: the page's "
+                          "numbers are used")
+        given = file.get("visual_tracker", {}) | given
     except (AttributeError, TypeError):  # a single value in place of all of them  不是一组参数
         given = {"~": given}
     wrong = [name for name in given if name not in PAGE or type(given[name]) not in (int, float)]
     if wrong:
+        rospy.delete_param("~")  # else refused again, once the file is right  否则改好后仍会报错
         rospy.logfatal("unknown parameter, or no number: '%s'; known: %s", wrong[0], [*PAGE])
         sys.exit(1)
     return SimpleNamespace(**PAGE | given)

@@ -122,6 +122,13 @@ class TrackersStory(unittest.TestCase):
             self.assertIn("unknown parameter, or no number: '~'", said)
             self.assertNotIn("Traceback", said)
 
+    def test_5_a_launch_files_parameters_are_there_for_a_node_that_is_started_again(self):
+        given = {"file": {"visual_trackr": {"fast_speed": 0.1}}}
+        rospy.set_param("/kept", given)
+        self.node = start("visual_tracker.py", "__name:=kept", "_slow_speed:=0.2")
+        self.assertIn("no section visual_tracker: the page's numbers", self.node.stdout.readline())
+        self.assertEqual(rospy.get_param("/kept"), given)
+
 
 if __name__ == "__main__":
     rospy.init_node("trackers_test")
