@@ -1,6 +1,8 @@
 """The lessons' C++ programs: each shows what lesson_commands.yaml expects of its script."""
 
 import importlib.util
+import os
+import subprocess
 from contextlib import closing
 from pathlib import Path
 
@@ -29,6 +31,14 @@ def test_every_program_is_started():
 def roscore(tmp_path_factory):
     with closing(scenarios.Roscore(tmp_path_factory.mktemp("roscore"))) as one:
         yield one
+
+
+@pytest.mark.parametrize("program", ["static_tf_sub.py", "static_tf_sub"])
+def test_a_frame_that_is_not_there_is_no_line_each_second(program, roscore):
+    there = os.environ | {"ROS_MASTER_URI": f"http://localhost:{roscore.cleared()}"}
+    ended = subprocess.run(["timeout", "-s", "INT", "5", "rosrun", "learning_tf", program],
+                           env=there, text=True, capture_output=True, timeout=60)
+    assert (ended.stdout + ended.stderr).count("not yet: ") == 1
 
 
 @pytest.mark.parametrize("scenario", CASES)

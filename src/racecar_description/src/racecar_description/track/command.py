@@ -32,7 +32,7 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 LARGEST = 100.0  # m, side of a plane
 
 ABOUT = "Makes a track from a drawing, a centre line or a seed: model, world, map, centre line."
-EXAMPLES = """examples:
+EXAMPLES = """examples of commands:
   make_track drawing.png --size 12x8 --walls      the road is dark in the picture
   make_track photo.jpg --road red --name monza    ... or red
   make_track tracks/monza.yaml --reverse          from a centre line, in the opposite direction

@@ -20,7 +20,7 @@ from workspace_needs.tables import UNKNOWN, is_slip, tables, why_absent
 from workspace_needs.workspace import WorkspaceError
 
 PACKAGE = re.compile(r"[A-Za-z][\w-]*")
-EPILOG = """examples:
+EPILOG = """examples of commands:
   rosrun bullet_sim_ros check robot.urdf.xacro model:=big    a robot
   rosrun bullet_sim_ros check my_world.world                 a world
   rosrun bullet_sim_ros check talker.py                      a script
