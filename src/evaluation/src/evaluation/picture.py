@@ -1,4 +1,4 @@
-"""Colours, top views in pixels, and pictures by matplotlib, which is loaded only to draw one."""
+"""Colours, top views in pixels, and charts by matplotlib, which is loaded only to draw one."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def bgr(colour: str) -> tuple[int, int, int]:
 
 
 FONT = cv2.FONT_HERSHEY_DUPLEX
-NUMBERED_PX = 35  # between lines of a grid, from which on they have numbers
+NUMBER_PX = 35  # room for the number of a grid's line
 SHIFT = 4  # cv2 draws between pixels when coordinates are given in sixteenths
 HEAD = np.array([(0.6, 0.0), (-0.4, 0.375), (-0.2, 0.0), (-0.4, -0.375)])  # of an arrow of length 1
 
@@ -69,14 +69,15 @@ class Plan:
         return (points - (self._low[0], self._high[1])) * self._scale
 
     def grid(self, step: float, step_up: float | None = None) -> None:
-        """Draw lines `step` metres apart, with their numbers where there is room."""
+        """Draw lines `step` metres apart, with numbers at as many as there is room for."""
         for axis, apart in enumerate((step, step_up or step)):
             first, last = math.ceil(self._low[axis] / apart), math.floor(self._high[axis] / apart)
+            numbered = math.ceil(NUMBER_PX / abs(apart * self._scale[axis]))
             for number in range(first, last + 1):
                 ends = np.array((self._low, self._high))
                 ends[:, axis] = number * apart
                 self.line(ends, GRID)
-                if apart * abs(self._scale[axis]) > NUMBERED_PX:
+                if number % numbered == 0:
                     x, y = self.to_px(ends)[0].round().astype(int).tolist()
                     write_text(self.image, f"{number * apart:g}", (x + 4, y - 4), 9, bgr(FAINT))
 
@@ -131,6 +132,7 @@ def course_plan(track_file: TrackFile, width_px: int, line_colour: str) -> Plan:
 def write_text(image: np.ndarray, text: str, at_px: tuple[int, int], height_px: int,
                colour: tuple = bgr(TEXT)) -> int:
     """Draw text with its baseline's left end at a pixel; returns its width in px."""
+    text = text.encode("ascii", "replace").decode()  # cv2 has no other letters
     thick = 2 if height_px > 24 else 1
     scale = cv2.getFontScaleFromHeight(FONT, height_px, thick)
     cv2.putText(image, text, at_px, FONT, scale, colour, thick, cv2.LINE_AA)
