@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import threading
 import time
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import rospkg
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import OccupancyGrid as OccupancyGridMessage
@@ -25,12 +23,10 @@ from amcl.settings import localisation_settings, sensor_settings, with_order
 from nav_algorithms import poses
 from nav_algorithms.cells import OccupancyGrid
 from nav_algorithms.monte_carlo import Localisation, Step
-from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.missing_data import MissingData, TopicWatchdog, watch_clock
-from nav_nodes.parameters import ParameterError, load_table, read_parameters, serve_changes
-from nav_nodes.program import init_node, spin
+from nav_nodes.parameters import serve_changes
+from nav_nodes.program import run_node
 
-TABLE = Path("params/amcl.yaml")  # below the package's folder
 SCAN_PATIENCE = 0.5               # s of wall time to wait for a scan's odometry
 DISORDER = 1.0                    # s by which scans of two lasers may be out of order
 WATCH = 0.25                      # s of wall time between two checks for missing inputs
@@ -230,14 +226,6 @@ class AmclNode:
                 self._outputs.diagnostics(covariance, self._values)
 
 
-def main() -> None:
-    """Runs the node until shutdown."""
-    init_node("amcl")
-    table = load_table(Path(rospkg.RosPack().get_path("amcl")) / TABLE)
-    try:
-        AmclNode(read_parameters(table), table)
-        warn_of_ignored({"": table}, [SAVED.lstrip("~")])
-    except ParameterError as error:
-        rospy.logfatal("%s", error)
-        raise SystemExit(1) from None
-    spin()
+def main() -> int:
+    """Runs the node until shutdown; returns the exit status."""
+    return run_node("amcl", "amcl", "params/amcl.yaml", AmclNode, [SAVED.lstrip("~")])

@@ -5,10 +5,8 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from pathlib import Path
 
 import numpy as np
-import rospkg
 import rospy
 import tf2_ros
 from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped, TransformStamped
@@ -22,10 +20,8 @@ from fake_localization.poses import (
     transform_matrix,
     transform_of,
 )
-from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.missing_data import MissingData, is_published, watch_clock, why_silent
-from nav_nodes.parameters import ParameterError, load_table, read_parameters
-from nav_nodes.program import init_node
+from nav_nodes.program import run_node
 from nav_nodes.transforms import NEWEST, Transforms
 
 WAITING = 100  # poses that wait for the odometry of their moment, at most; upstream's number
@@ -154,15 +150,6 @@ class FakeLocalization:
 
 
 def main() -> int:
-    """Runs the node until it is told to end; the exit status."""
-    init_node("fake_localization")
-    folder = Path(rospkg.RosPack().get_path("fake_localization"))
-    try:
-        table = load_table(folder / "params" / "fake_localization.yaml")
-        values = read_parameters(table)
-    except ParameterError as error:
-        rospy.logfatal("%s", error)
-        return 1
-    warn_of_ignored({"": table})
-    FakeLocalization(values).run()
-    return 0
+    """Runs the node until shutdown; returns the exit status."""
+    return run_node("fake_localization", "fake_localization", "params/fake_localization.yaml",
+                    lambda values, _: FakeLocalization(values).run())

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import threading
 import time
-from pathlib import Path
 
 import numpy as np
-import rospkg
 import rospy
 import tf2_ros
 from nav_msgs.msg import MapMetaData, OccupancyGrid
@@ -16,12 +14,10 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64
 
 from gmapping.mapper import TABLE, Mapper, ScanError
-from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.laser_mount import Mount, Mounts
 from nav_nodes.messages import MapAnswer, grid_message, transform_message
 from nav_nodes.missing_data import MissingData, TopicWatchdog, watch_clock
-from nav_nodes.parameters import ParameterError, load_table, read_parameters
-from nav_nodes.program import init_node, spin
+from nav_nodes.program import run_node
 from nav_nodes.transforms import Transforms
 
 PATIENCE = 0.5  # s of wall time to wait for a scan's odometry
@@ -126,15 +122,6 @@ class SlamNode:
             time.sleep(min(period, 0.5) or 0.5)
 
 
-def main() -> None:
-    """Runs the node until shutdown."""
-    init_node("slam_gmapping")
-    folder = Path(rospkg.RosPack().get_path("gmapping"))
-    try:
-        table = load_table(folder / TABLE)
-        SlamNode(read_parameters(table))
-        warn_of_ignored({"": table})
-    except ParameterError as error:
-        rospy.logfatal("%s", error)
-        raise SystemExit(1) from None
-    spin()
+def main() -> int:
+    """Runs the node until shutdown; returns the exit status."""
+    return run_node("slam_gmapping", "gmapping", TABLE, lambda values, _: SlamNode(values))

@@ -5,10 +5,8 @@ from __future__ import annotations
 import threading
 import time
 from dataclasses import fields
-from pathlib import Path
 
 import numpy as np
-import rospkg
 import rospy
 import tf2_ros
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
@@ -20,12 +18,10 @@ from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
 from nav_algorithms import poses
 from nav_algorithms.scan_slam import ScanSlam, ScanSlamSettings
-from nav_nodes.ignored import warn_of_ignored
 from nav_nodes.laser_mount import Mount, Mounts
 from nav_nodes.messages import MapAnswer, grid_message, pose_of, stamped_pose, transform_message
 from nav_nodes.missing_data import MissingData, TopicWatchdog, watch_clock
-from nav_nodes.parameters import ParameterError, load_table, read_parameters
-from nav_nodes.program import init_node, spin
+from nav_nodes.program import run_node
 from nav_nodes.transforms import Transforms
 
 PATIENCE = 0.5  # s of wall time to wait for a scan's transforms
@@ -193,15 +189,7 @@ class HectorMapping:
             time.sleep(min(self._values["map_pub_period"], 0.5))
 
 
-def main() -> None:
-    """Runs the node until shutdown."""
-    init_node("hector_mapping")
-    folder = Path(rospkg.RosPack().get_path("hector_mapping"))
-    try:
-        table = load_table(folder / "params" / "hector_mapping.yaml")
-        HectorMapping(read_parameters(table))
-        warn_of_ignored({"": table})
-    except ParameterError as error:
-        rospy.logfatal("%s", error)
-        raise SystemExit(1) from None
-    spin()
+def main() -> int:
+    """Runs the node until shutdown; returns the exit status."""
+    return run_node("hector_mapping", "hector_mapping", "params/hector_mapping.yaml",
+                    lambda values, _: HectorMapping(values))

@@ -17,7 +17,9 @@ import signal
 import sys
 import threading
 import traceback
-from typing import NoReturn
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any, NoReturn
 
 # MALLOC_TRIM_THRESHOLD_ and MALLOC_MMAP_THRESHOLD_ of the environment, for GNU's mallopt.
 _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
@@ -90,6 +92,31 @@ def init_node(name: str) -> None:
 def spin() -> None:
     """Wait until the node has been shut down and unregistered from the master."""
     _closed.wait()
+
+
+def run_node(name: str, package: str, table_file: str,
+             make: Callable[[dict[str, Any], list], object], others: Iterable[str] = ()) -> int:
+    """Run the node that `make` makes of its parameters' values and table; the exit status.
+
+    `table_file` is below the package's folder; `others` are parameters that are not in it.
+    """
+    import rospkg
+    import rospy
+
+    from nav_nodes.ignored import warn_of_ignored
+    from nav_nodes.parameters import ParameterError, load_table, read_parameters
+
+    init_node(name)
+    try:
+        table = load_table(Path(rospkg.RosPack().get_path(package)) / table_file)
+        values = read_parameters(table)
+        warn_of_ignored({"": table}, others)
+        make(values, table)
+    except ParameterError as error:
+        rospy.logfatal("%s", error)
+        return 1
+    spin()
+    return 0
 
 
 def is_ending() -> bool:
