@@ -39,6 +39,9 @@ function wireFrame() {
   const button = document.getElementById("language");
   button.textContent = language === "zh" ? "English" : "中文";
   button.onclick = switchLanguage;
+  const lessons = document.getElementById("lessons");
+  lessons.href = `lessons/${language}/index.html`;
+  lessons.textContent = t("Lessons", "课程");
   const light = document.getElementById("light");
   onConnection((there) => {
     light.className = there ? "on" : "off";

@@ -48,7 +48,8 @@ class Access:
         except (OSError, ValueError):  # an impossible file name
             return web.Response(status=404, text="no such file\n", headers=HEADERS)
         if not answer.prepared:
-            answer.headers.update(HEADERS)
+            for name, value in HEADERS.items():
+                answer.headers.setdefault(name, value)
             if self._token and request.query.get("token"):
                 answer.set_cookie(_cookie(request), self._token, httponly=True, samesite="Strict")
         return answer
