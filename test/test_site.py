@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
 
 pytestmark = pytest.mark.processes
 
@@ -15,6 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 TOOL = ROOT / "tools/site"
 sys.path.append(str(TOOL))
 
+from advice import _line, advice  # noqa: E402
 from checking import faults  # noqa: E402
 from recording import bench, watched_controller  # noqa: E402
 from staging import Pages, _with_links, menu, repository_pages  # noqa: E402
@@ -115,6 +117,21 @@ def test_every_plugin_and_controller_has_a_page_with_an_example_that_was_loaded(
 ])
 def test_defaults_units_and_topics_are_those_of_the_code(site, path, row):
     assert row in " ".join(page(site, f"en/reference/{path}.html").split())
+
+
+def test_the_page_of_errors_has_each_line_of_ours_that_says_what_to_type(site):
+    english, chinese = (page(site, f"{language}/reference/advice.html")
+                        for language in ("en", "zh"))
+    assert sum(map(len, advice().values())) > 200
+    for rows in advice().values():
+        for says, do, translated in rows:
+            assert _line(says).strip(" `").replace("\\|", "|") in english, says
+            assert _line(do).strip(" `").replace("\\|", "|") in english, do
+            assert _line(translated).strip(" `").replace("\\|", "|") in chinese, translated
+    for said in ("port … is root's", "Unable to communicate with master"):
+        assert said in english
+    common = yaml.safe_load((TOOL / "errors.yaml").read_text("utf-8"))
+    assert len(common) >= 20 and all(each["en"] and each["zh"] for each in common)
 
 
 def test_an_example_that_does_not_load_is_an_error_with_its_reason():

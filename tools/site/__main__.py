@@ -17,6 +17,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import rjieba
+from advice import add_advice
 from checking import faults
 from material.plugins.search import plugin as search
 from mkdocs.commands.build import build
@@ -77,6 +78,7 @@ def all_pages() -> Pages:
     """The repository's pages and the made ones."""
     pages = repository_pages()
     add_reference(pages)
+    add_advice(pages)
     pages.add("demo.md", *(text + FRAME for text in DEMO))
     return pages
 
