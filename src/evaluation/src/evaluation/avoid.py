@@ -16,7 +16,7 @@ import rosgraph
 from learning_laser import hall
 
 from evaluation.command_line import Parser, one_of
-from evaluation.picture import write_tiles
+from evaluation.picture import CAR, FAINT, Plan, lap_colour, write_tiles
 from evaluation.report import cell, mean, table
 from evaluation.run_page import RECORDING, begin_recording, write_run_page
 from evaluation.trial import Case, Trial
@@ -31,7 +31,7 @@ START_LIMIT = 120.0  # s, wall
 LIMIT = 120.0  # s, simulated
 TOPICS = ("/scan", "/cmd_vel")
 REACHED, CONTACT, LATE = "reached", "contact", "late"
-TILE = (5.0, 1.9)  # inches
+TILE_PX = 500
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class AvoidTrial(Trial):
              f"{min(each.nearest for each in results):.2f}")])
 
     def pictures(self, results: Sequence[DriveResult], out: Path) -> list[str]:
-        write_tiles(out / "paths.png", results, _draw, TILE, columns=2)
+        write_tiles(out / "paths.png", list(map(_tile, results)), columns=2)
         return ["paths.png"]
 
 
@@ -178,11 +178,11 @@ def _take(states: list[dict], lines: Sequence[str]) -> bool:
     return bool(found)
 
 
-def _draw(axes: object, result: DriveResult) -> tuple[str, bool]:
-    turn = np.linspace(0, 2 * np.pi, 25)
-    for x, y in hall.columns(result.seed):
-        axes.fill(x + hall.RADIUS * np.cos(turn), y + hall.RADIUS * np.sin(turn), "#7a8b99")
-    axes.plot(*zip(*result.path, strict=True), color="#1b6ca8")
-    axes.set(xlim=(-1, hall.LENGTH - 1), ylim=(-hall.WIDTH / 2, hall.WIDTH / 2), aspect="equal")
-    axes.axvline(hall.FINISH, color="#c0392b", linewidth=1)
-    return f"hall {result.seed}: {result.outcome}, {result.time:.1f} s", result.passed
+def _tile(result: DriveResult) -> tuple[str, bool, np.ndarray]:
+    plan = Plan((-1, -hall.WIDTH / 2), (hall.LENGTH - 1, hall.WIDTH / 2), TILE_PX)
+    for place in hall.columns(result.seed):
+        plan.disc(place, hall.RADIUS, FAINT)
+    plan.line([(hall.FINISH, -hall.WIDTH), (hall.FINISH, hall.WIDTH)], CAR)
+    plan.line(result.path, lap_colour(0), 2)
+    return (f"hall {result.seed}: {result.outcome}, {result.time:.1f} s", result.passed,
+            plan.image)

@@ -14,7 +14,7 @@ import numpy as np
 
 from evaluation import yard_drive
 from evaluation.command_line import Parser
-from evaluation.picture import CAR, FAINT, GOOD, chart, lap_colour, write_tiles
+from evaluation.picture import CAR, FAINT, GOOD, Plan, chart, lap_colour, write_tiles
 from evaluation.report import cell, grouped, mean, table_of
 from evaluation.trial import Case, Trial
 from evaluation.yard_drive import CROSSINGS, YARDS, NavigationStack, Record
@@ -145,9 +145,10 @@ def _summary(name: str, drives: list[DriveResult]) -> dict:
         "failed": [drive.name for drive in drives if not drive.reached]}
 
 
-YARD = (-APRON * CELL, (SIZE + APRON) * CELL, -SIZE * CELL / 2, SIZE * CELL / 2)  # m: x, y
-ROOM = (-0.2, 5.2, *YARD[2:])
-TILE_WIDTH, CAPTION = 3.4, 0.25  # inches
+HALF = SIZE * CELL / 2  # m
+YARD = (-APRON * CELL, -HALF), ((SIZE + APRON) * CELL, HALF)  # m, its corners
+ROOM = (-0.2, -HALF), (5.2, HALF)
+TILE_PX = 340
 COLOURS = {REACHED: "#1b6ca8", NOT_THERE: "#16a085", TOUCHED: "#c0392b",
            WALKED_INTO: "#8e44ad", GIVEN_UP: "#c9782f", LATE: "#7a8b99"}
 
@@ -191,50 +192,42 @@ def write_sheets(drives: Sequence[DriveResult], out: Path) -> list[str]:
     written = []
     sets = grouped(drives, lambda drive: drive.set)
     for kind, edges, ground in ((YARDS, YARD, _draw_yard), (CROSSINGS, ROOM, _draw_walk)):
-        def draw(axes: object, group: list[DriveResult], edges=edges, ground=ground
-                 ) -> tuple[str, bool]:
-            axes.set(xlim=edges[:2], ylim=edges[2:])
-            ground(axes, group[0])
-            return _draw_ways(axes, group, out)
-
         if kind in sets:
-            groups = list(grouped(sets[kind], lambda drive: drive.seed).values())
-            height = TILE_WIDTH * (edges[3] - edges[2]) / (edges[1] - edges[0]) + CAPTION
-            write_tiles(out / f"{kind}.png", groups, draw, (TILE_WIDTH, height))
+            tiles = []
+            for group in grouped(sets[kind], lambda drive: drive.seed).values():
+                plan = Plan(*edges, TILE_PX)
+                ground(plan, group[0])
+                tiles.append((*_draw_ways(plan, group, out), plan.image))
+            write_tiles(out / f"{kind}.png", tiles)
             written.append(f"{kind}.png")
     return written
 
 
-def _draw_yard(axes: object, drive: DriveResult) -> None:
+def _draw_yard(plan: Plan, drive: DriveResult) -> None:
     """Draw the columns and the shortest path."""
-    from matplotlib.collections import EllipseCollection
-
     yard = draw_yard(drive.seed)
-    round_things = np.full(len(yard.cylinders), 2 * RADIUS)
-    axes.add_collection(EllipseCollection(
-        round_things, round_things, 0 * round_things, units="xy", facecolors=FAINT,
-        offsets=yard.cylinders, offset_transform=axes.transData))
-    axes.plot(*places(yard.path).T, color=GOOD, linewidth=3, alpha=0.4)
+    for place in yard.cylinders:
+        plan.disc(place, RADIUS, FAINT)
+    plan.line(places(yard.path), GOOD, 3)
 
 
-def _draw_walk(axes: object, drive: DriveResult) -> None:
+def _draw_walk(plan: Plan, drive: DriveResult) -> None:
     """Draw the strip that the person walks through."""
     walk = crossing.Crossing(**drive.drawn)
     begin, yaw = np.array(walk.begin[:2]), walk.heading
-    ends = np.array([begin, begin + 2 * crossing.APPROACH * np.array([np.cos(yaw), np.sin(yaw)])])
-    aside = crossing.PERSON_RADIUS * np.array([-np.sin(yaw), np.cos(yaw)])
-    axes.fill(*np.concatenate([ends + aside, ends[::-1] - aside]).T, color=lap_colour(3), alpha=0.5)
+    end = begin + 2 * crossing.APPROACH * np.array([np.cos(yaw), np.sin(yaw)])
+    plan.line([begin, end], lap_colour(3), round(2 * crossing.PERSON_RADIUS * plan.px_per_m))
 
 
-def _draw_ways(axes: object, drives: list[DriveResult], out: Path) -> tuple[str, bool]:
+def _draw_ways(plan: Plan, drives: list[DriveResult], out: Path) -> tuple[str, bool]:
     """Draw the paths, with a dot where one missed its goal; returns the caption and success."""
     for drive in drives:
         path = out / "drives" / f"{drive.name}.json"
         if path.exists():
             way = np.array(json.loads(path.read_text()))[:, 1:3]
-            axes.plot(*way.T, color=lap_colour(drive.repeat), linewidth=1)
+            plan.line(way, lap_colour(drive.repeat))
             if not drive.reached:
-                axes.plot(*way[-1], "o", color=CAR, markersize=4)
+                plan.dots(way[-1:], CAR)
     said = ", ".join(f"{each.time:.0f} s" if each.reached else each.outcome for each in drives)
     return f"{drives[0].seed}: {said}", all(each.reached for each in drives)
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import contextlib
 import copy
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import cv2
 import numpy as np
@@ -16,10 +15,6 @@ from racecar_description.track.track_file import TrackFile
 
 from evaluation.lap import LapScorer
 from run_session.files import write_whole
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 PAPER, FLOOR, GRID, TEXT, FAINT = "#181a1e", "#0e0e10", "#24272c", "#e4e8eb", "#989ea5"
 LINE, WHITE = "#ffff00", "#e1e1e1"  # lines of AutoRace's courses, as cameras see them
@@ -163,7 +158,7 @@ def _fixed(points_px: np.ndarray) -> np.ndarray:
     return np.round(np.asarray(points_px) * (1 << SHIFT)).astype(np.int32)
 
 
-DPI, PANEL_DPI, PANEL = 100, 110, (6.5, 3.4)  # of small plots and of charts: px an inch; inches
+PANEL_DPI, PANEL = 110, (6.5, 3.4)  # of charts: px an inch; inches
 MAP_PX, SIDE_PX, ARROW_PX = 1300, 50, 70  # of a sheet: its maps' width, beside them; the car
 
 
@@ -178,15 +173,6 @@ def sheet(texts: Sequence[str], plans: Sequence[Plan], entries: Iterable[tuple[s
     parts = [*(plan.image for plan in plans), legend]
     return np.vstack([page, *(cv2.copyMakeBorder(
         part, 10, 10, SIDE_PX, SIDE_PX, cv2.BORDER_CONSTANT, value=bgr(PAPER)) for part in parts)])
-
-
-def pixels(figure: Figure) -> np.ndarray:
-    """The figure as a picture (rows, columns, 3), BGR."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    return np.asarray(canvas.buffer_rgba())[..., 2::-1].copy()
 
 
 def write_png(path: Path, picture: np.ndarray) -> None:
@@ -229,28 +215,25 @@ def _lap_figures(drive: LapScorer, number: int) -> str:
     return f": {lap.time:.1f} s, {lap.distance:.2f} m, RMS {lap.rms_lateral * 100:.1f} cm"
 
 
-def write_tiles(path: Path, tiles: Sequence[Any], draw: Callable[[Axes, Any], tuple[str, bool]],
-                size: tuple[float, float], columns: int = 5) -> None:
-    """Write a picture of one small plot for each tile, `size` in inches (width, height).
-
-    `draw` draws one and returns its caption, and whether it was a success.
-    """
-    from matplotlib.figure import Figure
-
-    columns, rows = min(columns, len(tiles)), -(-len(tiles) // columns)
-    figure = Figure(figsize=(size[0] * columns, size[1] * rows), dpi=DPI, facecolor=PAPER,
-                    layout="constrained")
-    for number, tile in enumerate(tiles, start=1):
-        axes = figure.add_subplot(rows, columns, number, facecolor=FLOOR)
-        axes.set(xticks=(), yticks=(), aspect="equal")
-        caption, good = draw(axes, tile)
-        axes.set_title(caption, fontsize=7, color=TEXT if good else CAR)
-    write_png(path, pixels(figure))
+def write_tiles(path: Path, tiles: Sequence[tuple[str, bool, np.ndarray]], columns: int = 5
+                ) -> None:
+    """Write tiles side by side: captions, whether they were successes, pictures of one size."""
+    shown = []
+    for caption, good, picture in tiles:
+        head = np.full((24, picture.shape[1], 3), bgr(PAPER), np.uint8)
+        write_text(head, caption, (4, 16), 8, bgr(TEXT if good else CAR))
+        shown.append(cv2.copyMakeBorder(np.vstack([head, picture]), 0, 6, 3, 3,
+                                        cv2.BORDER_CONSTANT, value=bgr(PAPER)))
+    columns = min(columns, len(shown))
+    shown += [np.full_like(shown[0], bgr(PAPER))] * (-len(shown) % columns)
+    write_png(path, np.vstack([np.hstack(shown[first:first + columns])
+                               for first in range(0, len(shown), columns)]))
 
 
 @contextlib.contextmanager
 def chart(path: Path, rows: int, columns: int, **settings: object) -> Iterator[np.ndarray]:
     """A context that yields the Axes (rows, columns) of a chart and writes it at the end."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     sheet = Figure(figsize=(PANEL[0] * columns, PANEL[1] * rows), dpi=PANEL_DPI)
@@ -260,4 +243,6 @@ def chart(path: Path, rows: int, columns: int, **settings: object) -> Iterator[n
         axes.tick_params(labelsize=8, length=0)
         axes.grid(alpha=0.3)
     sheet.tight_layout()
-    write_png(path, pixels(sheet))
+    canvas = FigureCanvasAgg(sheet)
+    canvas.draw()
+    write_png(path, np.asarray(canvas.buffer_rgba())[..., 2::-1])

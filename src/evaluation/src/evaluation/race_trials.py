@@ -6,10 +6,10 @@ import argparse
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import cv2
+import numpy as np
 from racecar_description.track.from_numbers import from_seed
 from racecar_description.track.model_files import write_course
 from racecar_description.track.wishes import Wishes
@@ -72,7 +72,7 @@ def summarize(laps: Sequence[Lap]) -> list[dict]:
 
 COLOURS = ("#1b6ca8", "#c9782f", "#7a8b99", "#3a8f5c")
 LIMIT_COLOUR = "#c0392b"
-TILE = (4.4, 3.6)  # inches, of a path
+TILE_PX = 440, 320  # of a path
 
 # Label, value, limit, and which side of the limit is good.
 ROWS: tuple[tuple[str, Callable[[Lap], float], float, str], ...] = (
@@ -111,17 +111,20 @@ def _draw(axes: object, laps: Sequence[Lap], value: Callable[[Lap], float]) -> N
 def write_path_sheet(laps: Sequence[Lap], out: Path) -> Path:
     """Write OUT/paths_<follower>.png with a tile for each of the follower's laps."""
     path = out / f"paths_{Path(laps[0].follower).stem}.png"
-    write_tiles(path, laps, partial(_draw_path, out), TILE)
+    write_tiles(path, [_tile(out, lap) for lap in laps])
     return path
 
 
-def _draw_path(out: Path, axes: object, lap: Lap) -> tuple[str, bool]:
-    """Draw the lap's path; returns its caption, and whether it was within the limits."""
-    picture = cv2.imread(str(out / lap.folder / "path.png"), cv2.IMREAD_REDUCED_COLOR_2)
+def _tile(out: Path, lap: Lap) -> tuple[str, bool, np.ndarray]:
+    """The lap's path with its caption, and whether it was within the limits."""
+    tile = np.zeros((*TILE_PX[::-1], 3), np.uint8)
+    picture = cv2.imread(str(out / lap.folder / "path.png"))
     if picture is not None:
-        axes.imshow(picture[..., ::-1])
+        scale = min(TILE_PX[0] / picture.shape[1], TILE_PX[1] / picture.shape[0])
+        small = cv2.resize(picture, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+        tile[:small.shape[0], :small.shape[1]] = small
     figures = f"{lap.mean_speed:.2f} m/s, RMS {lap.rms_lateral * 100:.1f} cm"
-    return f"{lap.track}, seed {lap.seed}: {lap.outcome}, {figures}", lap.within_limits
+    return f"{lap.track}, seed {lap.seed}: {lap.outcome}, {figures}", lap.within_limits, tile
 
 
 RACETRACK, RANDOM_TRACKS = "racetrack", "random tracks"  # the two sets of laps
