@@ -1,5 +1,6 @@
 """`make site`: every link leads somewhere, no other host is asked, and both languages are whole."""
 
+import ast
 import html
 import json
 import re
@@ -19,6 +20,7 @@ sys.path.append(str(TOOL))
 from advice import _line, advice  # noqa: E402
 from checking import faults  # noqa: E402
 from recording import bench, watched_controller  # noqa: E402
+from ros2 import follower, twins  # noqa: E402
 from staging import Pages, _with_links, menu, repository_pages  # noqa: E402
 
 from bullet_sim.errors import PluginError  # noqa: E402
@@ -125,13 +127,30 @@ def test_the_page_of_errors_has_each_line_of_ours_that_says_what_to_type(site):
     assert sum(map(len, advice().values())) > 200
     for rows in advice().values():
         for says, do, translated in rows:
-            assert _line(says).strip(" `").replace("\\|", "|") in english, says
-            assert _line(do).strip(" `").replace("\\|", "|") in english, do
-            assert _line(translated).strip(" `").replace("\\|", "|") in chinese, translated
+            assert _line(says).strip(" `") in english, says
+            assert _line(do).strip(" `") in english, do
+            assert _line(translated).strip(" `") in chinese, translated
     for said in ("port … is root's", "Unable to communicate with master"):
         assert said in english
     common = yaml.safe_load((TOOL / "errors.yaml").read_text("utf-8"))
     assert len(common) >= 20 and all(each["en"] and each["zh"] for each in common)
+
+
+def test_each_lesson_for_ros_2_is_python_that_only_speaks_rclpy(site):
+    for name, text in twins().items():
+        names = {getattr(node, "module", None) or each.name for node in ast.walk(ast.parse(text))
+                 if isinstance(node, ast.Import | ast.ImportFrom) for each in node.names}
+        assert not names & {"rospy", "rosbag", "actionlib", "roslib"}, name
+        assert any(each.split(".")[0] in ("rclpy", "launch") for each in names), name
+        shown = page(site, "zh/docs/ros2.html")
+        assert all(line.strip() in shown for line in text.splitlines()), name
+    lessons = {path.name for path in (ROOT / "src/learning_topic/scripts").glob("0*.py")}
+    assert len(lessons) == 7 and lessons <= twins().keys()
+
+
+def test_a_lesson_that_speaks_to_ros_in_a_new_way_is_named():
+    with pytest.raises(ValueError, match=r"no rule for: rospy\.new_thing"):
+        follower("class Follower:\n    x = rospy.new_thing\n\n\ndef main():\n")
 
 
 def test_an_example_that_does_not_load_is_an_error_with_its_reason():
@@ -148,6 +167,7 @@ def test_an_example_that_does_not_load_is_an_error_with_its_reason():
     ("[packages.yaml](dependencies/packages.yaml)", "`dependencies/packages.yaml`"),
     ("[`x`](https://example.org/a)", "[`x`](https://example.org/a)"),
     ("`[a](LICENSE)`", "`[a](LICENSE)`"),
+    ("| `a\\|b` | c\\|d |", "| `a|b` | c\\|d |"),
     ("```\n[a](LICENSE)\n```", "```\n[a](LICENSE)\n```"),
 ])
 def test_links_lead_to_pages_and_files_are_their_paths(text, linked):

@@ -24,6 +24,7 @@ from mkdocs.commands.build import build
 from mkdocs.config import load_config
 from mkdocs.exceptions import Abort, MkDocsException
 from reference import add_reference
+from ros2 import add_ros2
 from staging import HERE, ROOT, Pages, repository_pages, stage
 
 from bullet_sim.errors import SimulationError
@@ -79,6 +80,7 @@ def all_pages() -> Pages:
     pages = repository_pages()
     add_reference(pages)
     add_advice(pages)
+    add_ros2(pages)
     pages.add("demo.md", *(text + FRAME for text in DEMO))
     return pages
 

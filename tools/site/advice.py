@@ -62,6 +62,6 @@ def add_advice(pages: Pages) -> None:
 
 def _line(text: str) -> str:
     """As code in a table's cell, with … for a value."""
-    text = re.sub(r"\{\d+\}|\$\{?\w+\}?|%[sd]", "…", text).replace("|", "\\|")
+    text = re.sub(r"\{\d+\}|\$\{?\w+\}?|%[sd]", "…", text)
     text = " ".join(text.split())
     return f"`` {text} ``" if "`" in text else f"`{text}`" if text else ""

@@ -21,9 +21,10 @@ ROOT = HERE.parent.parent
 LANGUAGES = ("en", "zh")
 CHINESE = ".zh-CN.md"
 PICTURES = (".png", ".webp", ".svg", ".jpg", ".gif")
-LEFT_OUT = re.compile(r"\.github/|.*/vendor/|.*/models/|test/")
+LEFT_OUT = re.compile(r"\.github/|tools/|.*/vendor/|.*/models/|test/")
 OTHER_LANGUAGE = re.compile(r"^\[(中文|English)\]\([^)]*\)\n+", re.MULTILINE)
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
+ROW = re.compile(r"^\|.*\|$", re.MULTILINE)
 CODE = re.compile(r"(^```.*?^```\s*?$|``.+?``|`[^`\n]+`)", re.MULTILINE | re.DOTALL)
 HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)
 CODE_BLOCK = re.compile(r"^```.*?^```\s*?$", re.MULTILINE | re.DOTALL)
@@ -107,6 +108,8 @@ def _with_links(text: str, page: str, pages: Pages, language: str) -> str:
         return f"`{path}`" if label.strip("`") in path else f"{label} (`{path}`)"
 
     text = text.replace("<details>", '<details markdown="1">')
+    text = ROW.sub(lambda row: re.sub(  # GitHub alone needs the backslash
+        r"`[^`]+`", lambda code: code[0].replace("\\|", "|"), row[0]), text)
     # Code is not searched for links; a link's own label may have code.
     kept: list[str] = []
 
