@@ -1,6 +1,6 @@
 # Every command is a script in scripts/; run a script itself to get its own exit code.
 verbs = setup course race viewer drive lane track avoid navigate autorace mark site shell deps build report clean clean-root help \
-  test lint race-trials track-trials lane-trials navigation-trials localisation-trials bench-lanes bench fuzz chaos soak mutants check-releases deb image
+  test lint race-trials track-trials lane-trials navigation-trials localisation-trials bench-lanes bench fuzz chaos soak mutants check-releases deb image wheels
 .PHONY: $(verbs)
 .DEFAULT_GOAL = help
 
@@ -160,3 +160,6 @@ deb: ### build a Debian package of everything, in out/
 
 image: ### build the image of docker/, and save it in out/, for docker load [SUITE=bookworm]
 	@scripts/image.sh $(if $(SUITE),--suite "$$SUITE")
+
+wheels: ### build Python packages of the simulator and the learning environments, in out/wheels/, for pip
+	@scripts/wheels.sh

@@ -27,7 +27,8 @@ python_packages() {
     $([ "$tests" = no ] || echo requirements-test.txt) \
     $([ "$workers" = no ] || echo requirements-workers.txt) \
     $([ "$learning" = no ] || echo requirements-learning.txt) \
-    $([ "$site" = no ] || echo requirements-site.txt); do
+    $([ "$site" = no ] || echo requirements-site.txt) \
+    $([ "$wheels" = no ] || echo requirements-wheels.txt); do
     [ -f "$lists/$file" ] && ! cmp -s "$lists/$file" "$state/$file" || continue
     touch "$state/venv-unfinished"
     if [ "$file" = requirements-source.txt ]; then
@@ -35,7 +36,9 @@ python_packages() {
     else
       step 4 $"installing the Python packages of ${lists#"$root"/}/$file"
       target=(--no-user)
-      if [ "$file" = requirements-rosdep.txt ]; then target=(--target "$venv/rosdep" --upgrade); fi
+      case $file in requirements-rosdep.txt | requirements-wheels.txt)
+        target=(--target "$venv/$(basename "${file#requirements-}" .txt)" --upgrade) ;;
+      esac
       logged pip pip install "${target[@]}" --require-hashes --only-binary :all: -r "$lists/$file" || pip_failed install
     fi
     cp "$lists/$file" "$state/$file"

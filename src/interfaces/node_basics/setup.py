@@ -1,12 +1,18 @@
 """Installs the package's modules with plain pip as well as through catkin."""
 
+from pathlib import Path
+from xml.etree import ElementTree
+
 from setuptools import find_packages, setup
 
+PACKAGE = ElementTree.parse(Path(__file__).resolve().with_name("package.xml"))
 setup(
     name="node_basics",
-    version="0.1.0",
+    version=PACKAGE.findtext("version"),
+    description=PACKAGE.findtext("description"),
+    license=PACKAGE.findtext("license"),
     package_dir={"": "src"},
     packages=find_packages("src"),
     python_requires=">=3.11",
-    install_requires=["numpy", "PyYAML"],
+    install_requires=["numpy>=1.26,<3", "PyYAML>=6"],
 )

@@ -23,6 +23,7 @@ setup(
     python_requires=">=3.11",
     install_requires=[
         "fast-simplification>=0.2,<0.3",  # its loss-free mode has a tolerance, see meshes/detail.py
+        "lxml>=4.9,<7",  # for trimesh: .dae
         "moderngl>=5.10,<6",  # releases textures by weak references, which 5.6 lacks
         "numpy>=1.26,<3",
         "opencv-python-headless>=4.8,<5",
