@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[4]
 DEBIANS = "/usr/bin/catkin_find"
 ROSRUN = (["--without-underlays", "--libexec", "--share"], ["--without-underlays", "--share"])
-PACKAGES = ["above", "both", "below", "installed", "stale", "no_package"]
+PACKAGES = ["above", "both", "below", "installed", "stale", "no_package", "tf"]
 
 
 @pytest.fixture(scope="module")
@@ -29,6 +29,7 @@ def terminal(tmp_path_factory) -> dict[str, str]:
             (folder / name / "devel/lib" / home.name).mkdir(parents=True)
         (folder / name / "devel/.catkin").write_text(str(folder / name / "src"))
     (folder / "top/devel/lib/stale").mkdir()  # its source has gone
+    (folder / "top/devel/lib/tf").mkdir()  # a program of ours under the name of Debian's package
     for path in ("lib", "share"):
         (folder / "install" / path / "installed").mkdir(parents=True)
     (folder / "install/.catkin").touch()
@@ -36,7 +37,8 @@ def terminal(tmp_path_factory) -> dict[str, str]:
     prefixes = ["no workspace", "top/devel", "under/devel", "install"]
     return os.environ | {
         "CMAKE_PREFIX_PATH": ":".join(str(folder / each) for each in prefixes),
-        "ROS_PACKAGE_PATH": f"{folder}/top/src:{folder}/under/src:{folder}/install/share",
+        "ROS_PACKAGE_PATH": ":".join([*(f"{folder}/{each}" for each in (
+            "top/src", "under/src", "install/share")), "/usr/share"]),
         "ROS_HOME": str(folder / "ros")}
 
 
@@ -75,6 +77,7 @@ def test_a_version_is_debians(words, distro):
 
 @pytest.mark.parametrize(("program", "words"), [
     ("catkin_find", [*ROSRUN[0], "both"]), ("catkin_find", [*ROSRUN[1], "both"]),
+    ("catkin_find", [*ROSRUN[0], "tf"]),
     ("rosversion", ["-d"]), ("rosversion", ["roslaunch"])], ids=str)
 def test_ours_is_asked_and_starts_no_python(terminal, program, words):
     found = shutil.which(program)
