@@ -10,7 +10,8 @@ from sim_viewer import options as node_options
 from sim_viewer import registry
 from sim_viewer.options import Options
 from sim_viewer.registry import Node
-from sim_viewer.server import NoPort, Server, further_urls, page_url
+from sim_viewer.server import NoPort, Server
+from sim_viewer.urls import further_urls, page_url
 from yarl import URL
 
 PATHS = ("/", "/main.js", "/ws")

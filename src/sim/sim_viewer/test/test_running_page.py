@@ -11,8 +11,8 @@ from sim_viewer import node as viewer_node
 from sim_viewer.options import TOKEN, Options, read_options
 from sim_viewer.registry import Node
 from sim_viewer.running_page import ask
-from sim_viewer.server import local_url
 from sim_viewer.tools.master import SystemState, simulator_name
+from sim_viewer.urls import local_url
 
 from bullet_sim_ros.already_running import Sign
 

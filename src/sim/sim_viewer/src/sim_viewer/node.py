@@ -24,7 +24,8 @@ from sim_viewer.options import TOKEN, OptionError, Options, read_options
 from sim_viewer.registry import Node
 from sim_viewer.running_page import RUNS_ALREADY, running_page, why_another_port
 from sim_viewer.rviz.config import ConfigError, read_config
-from sim_viewer.server import NoPort, Server, further_urls, page_url
+from sim_viewer.server import NoPort, Server
+from sim_viewer.urls import further_urls, page_url
 
 M_MMAP_THRESHOLD = -3  # of glibc's malloc.h
 LARGE = 1 << 20  # bytes

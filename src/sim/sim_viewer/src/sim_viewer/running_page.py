@@ -21,9 +21,8 @@ from bullet_sim_ros.already_running import (
     full_name,
     sign_of_life,
 )
-from sim_viewer import server
 from sim_viewer.options import Options
-from sim_viewer.server import local_url
+from sim_viewer.urls import ABOUT, local_url
 
 RUNS_ALREADY = "A page runs already: %s"
 LACKS = ("A page runs already: %s It was started without %s: end it with Ctrl-C in its terminal, "
@@ -103,7 +102,7 @@ def ask(address: str) -> dict[str, Any]:
     except (ValueError, http.client.HTTPException):  # no port, which read_options will say
         return {}
     try:
-        connection.request("GET", server.PATH)
+        connection.request("GET", ABOUT)
         told = json.loads(connection.getresponse().read())
     except (OSError, http.client.HTTPException, ValueError):
         return {}

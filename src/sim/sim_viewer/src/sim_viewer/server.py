@@ -2,10 +2,8 @@
 
 import errno
 import logging
-from ipaddress import ip_address
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
 
 import rosgraph
 import rospkg
@@ -21,10 +19,9 @@ from sim_viewer.lessons import ADDRESS, serve_lesson
 from sim_viewer.options import Options
 from sim_viewer.page_scene import Meshes
 from sim_viewer.registry import Context, Node, operation
+from sim_viewer.urls import ABOUT
 
-PATH = "/about"  # the same over HTTP
 PORTS_TRIED = 100
-EVERYWHERE = ("0.0.0.0", "::", "")  # all addresses of the machine
 
 
 def facts(options: Options) -> dict[str, Any]:
@@ -55,7 +52,7 @@ class Server:
         app.router.add_get("/ws", self._hub.serve)
         app.router.add_get("/{kind:mesh|texture}/{number:[0-9]{1,9}}", self.serve_shape)
         app.router.add_get("/", self._index)
-        app.router.add_get(PATH, self._about)
+        app.router.add_get(ABOUT, self._about)
         app.router.add_get(ADDRESS, serve_lesson)
         app.router.add_static("/", self._folder)
         self._runner = web.AppRunner(app, access_log=None, logger=_logger(), shutdown_timeout=1.0)
@@ -110,30 +107,3 @@ def _logger() -> logging.Logger:
 
 def _is_fault_of_server(record: logging.LogRecord) -> bool:
     return not (record.exc_info and isinstance(record.exc_info[1], HttpProcessingError))
-
-
-def page_url(options: Options, port: int) -> str:
-    """The page's address for a browser on this machine."""
-    return local_url(options.address, port) + _token(options)
-
-
-def local_url(address: str, port: int) -> str:
-    """The URL by which this machine reaches what listens at this address."""
-    return _url("127.0.0.1" if address in EVERYWHERE else address, port)
-
-
-def further_urls(options: Options, port: int, addresses: list[str]) -> list[str]:
-    """The page's addresses for other machines, if it listens at all `addresses` of this one."""
-    if options.address not in EVERYWHERE:
-        return []
-    return [_url(address, port) + _token(options) for address in addresses
-            if not ip_address(address).is_loopback and not ip_address(address).is_link_local
-            and (options.address != "0.0.0.0" or ":" not in address)]
-
-
-def _url(host: str, port: int) -> str:
-    return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
-
-
-def _token(options: Options) -> str:
-    return f"?token={quote(options.token)}" if options.token else ""
