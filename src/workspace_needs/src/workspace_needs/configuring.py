@@ -20,6 +20,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
@@ -37,6 +38,9 @@ CACHE = "CMakeCache.txt"
 THREADS = re.compile(r"^CMAKE_HAVE_LIBC_PTHREAD:INTERNAL=.*$", re.MULTILINE)
 VARIABLES = ("CC", "CXX", "CPPFLAGS", "CFLAGS", "CXXFLAGS", "LDFLAGS")  # of the environment
 CHOICE = re.compile(r"\bCMAKE_C(XX)?_COMPILER\b|TOOLCHAIN")
+# CMake asks distutils where Python is; to load setuptools' copy of that takes ten times as long.
+# Later Pythons have none of their own.
+OWN_DISTUTILS = {"SETUPTOOLS_USE_DISTUTILS": "stdlib"} if sys.version_info < (3, 12) else {}
 LIMIT = 300.0  # s, wall, for one package; some fetch sources while they are configured
 MOST_KEPT = 4000  # results
 LEFT_OUT = re.compile(r": target (\S+) is left out: (.+?)\. What the simulator has in its place")
@@ -256,7 +260,8 @@ class _Run:
                    f"-DCMAKE_PREFIX_PATH={';'.join(filter(None, prefixes))}", *more]
         with subprocess.Popen(command, cwd=build, stdin=subprocess.DEVNULL, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              errors="replace", start_new_session=True) as process:
+                              errors="replace", start_new_session=True,
+                              env=os.environ | OWN_DISTUTILS) as process:
             self._processes.add(process)
             try:
                 said, _ = process.communicate(timeout=LIMIT)
