@@ -124,7 +124,8 @@ def test_closed_laps_are_reported_and_kept_by_a_run_that_fails(start):
     assert report["versions"]["numpy"]
     assert cv2.imread(str(run.out / "path.png")).shape[1] == 1400
     before = (run.out / "report.json").read_bytes()
-    run = start(*FAKE, "--launch-arg", "behaviour:=no_car", "--startup-timeout", "15")
+    run = start(*FAKE, "--launch-arg", "behaviour:=no_car", "--launch-arg", "factor:=1",
+                "--startup-timeout", "15")
     assert run.wait() == 2
     assert "the car (model turtlebot3_waffle) was not there" in run.last_line
     assert not (run.out / "report.json").exists()
