@@ -103,6 +103,7 @@ def test_every_plugin_and_controller_has_a_page_with_an_example_that_was_loaded(
 
 
 @pytest.mark.parametrize("path, row", [
+    ("plugins/libgazebo_ros_diff_drive", "tag default unit note robotNamespace"),
     ("plugins/libgazebo_ros_diff_drive", "wheelSeparation 0.34 m"),
     ("plugins/libgazebo_ros_diff_drive", "robotNamespace the model's name"),
     ("plugins/libgazebo_ros_diff_drive", "subscribes to /bot/cmd_vel geometry_msgs/Twist"),
@@ -167,6 +168,7 @@ def test_an_example_that_does_not_load_is_an_error_with_its_reason():
     ("[packages.yaml](dependencies/packages.yaml)", "`dependencies/packages.yaml`"),
     ("[`x`](https://example.org/a)", "[`x`](https://example.org/a)"),
     ("`[a](LICENSE)`", "`[a](LICENSE)`"),
+    ("一行，\n又一行\n\n另一段", "一行，又一行\n\n另一段"),
     ("| `a\\|b` | c\\|d |", "| `a|b` | c\\|d |"),
     ("```\n[a](LICENSE)\n```", "```\n[a](LICENSE)\n```"),
 ])

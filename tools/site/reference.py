@@ -73,7 +73,7 @@ def add_reference(pages: Pages) -> None:
         controllers = {kind: watched_controller(kind, example, made)
                        for kind, example in examples.items()}
     for language, texts in pages.texts.items():
-        says = SAYS[language] | WORDS[language]
+        says = WORDS[language] | SAYS[language]
         for name, (model, seen) in plugins.items():
             texts[f"{PLUGINS}/{PurePosixPath(name).stem}.md"] = plugin_page(
                 rows[name], model, seen, says, language)

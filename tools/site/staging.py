@@ -24,6 +24,7 @@ PICTURES = (".png", ".webp", ".svg", ".jpg", ".gif")
 LEFT_OUT = re.compile(r"\.github/|tools/|.*/vendor/|.*/models/|test/")
 OTHER_LANGUAGE = re.compile(r"^\[(中文|English)\]\([^)]*\)\n+", re.MULTILINE)
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
+BROKEN = re.compile(r"(?<=[\u3001-\u9fff\uff00-\uffef])\n(?=[\u3001-\u9fff\uff00-\uffef])")
 ROW = re.compile(r"^\|.*\|$", re.MULTILINE)
 CODE = re.compile(r"(^```.*?^```\s*?$|``.+?``|`[^`\n]+`)", re.MULTILINE | re.DOTALL)
 HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)
@@ -120,7 +121,7 @@ def _with_links(text: str, page: str, pages: Pages, language: str) -> str:
     def label_code(found: re.Match) -> str:
         return kept[int(found[1])]
 
-    hidden = CODE.sub(keep, text)
+    hidden = BROKEN.sub("", CODE.sub(keep, text))
     linked = LINK.sub(lambda found: re.sub(r"\0(\d+)\0", label_code, link(
         re.match(LINK, re.sub(r"\0(\d+)\0", label_code, found[0])) or found)), hidden)
     return re.sub(r"\0(\d+)\0", label_code, linked)
