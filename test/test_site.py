@@ -209,6 +209,7 @@ def test_a_replay_that_is_not_there_is_one_line_and_the_old_site_stays(tmp_path)
     old = tmp_path / "site/index.html"
     old.parent.mkdir()
     old.write_text("old")
+    (tmp_path / "site.x.unfinished").mkdir()  # of a build that was killed
     done = built(tmp_path, "--replay", str(tmp_path / "none.html"))
     assert (done.returncode, done.stderr) == (
         1, f"site: {tmp_path}/none.html: No such file or directory\n")

@@ -115,12 +115,16 @@ def main() -> int:
     begun, out = time.monotonic(), given.out.resolve()
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix="site.", dir=out.parent) as folder:
+        for left in out.parent.glob(f"{out.name}.*.unfinished"):  # of one that was killed
+            shutil.rmtree(left)
+        with tempfile.TemporaryDirectory(".unfinished", f"{out.name}.", out.parent) as folder:
             made = Path(folder) / "site"
             made.mkdir()
             build_site(made, given.replay)
             shutil.rmtree(out, ignore_errors=True)
             made.rename(out)
+    except KeyboardInterrupt:
+        return 130
     except OSError as error:
         print(f"site: {error.filename or out}: {error.strerror}", file=sys.stderr)
         return 1
