@@ -108,10 +108,8 @@ take_turn() {
 
 # Waits for the simulator of this process, and ends the turn; fails if the process ends before.
 wait_for_simulator() {
-  until rosservice list 2> /dev/null | grep -q '^/gazebo/get_world_properties$'; do
-    kill -0 "$1" 2> /dev/null || return 1
-    sleep 0.2
-  done
+  setpriv --pdeathsig TERM python3 -m run_session.master --wait "$1" 2> /dev/null {turn}>&- &
+  wait $! || return 1  # in the background: otherwise this shell's traps would wait, too
   exec {turn}>&-
 }
 

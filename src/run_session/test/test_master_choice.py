@@ -2,6 +2,7 @@
 
 import os
 import socket
+import subprocess
 import threading
 from xmlrpc.server import SimpleXMLRPCServer
 
@@ -16,6 +17,7 @@ from run_session.master import (
     is_up,
     listens_here,
     own_port,
+    wait_for_simulator,
 )
 
 
@@ -103,3 +105,41 @@ def test_another_programs_answer_is_no_masters():
         thread.start()
         assert not is_up(f"http://127.0.0.1:{server.server_address[1]}/")
         thread.join()
+
+
+@pytest.fixture
+def master_without_simulator(monkeypatch):
+    """A master whose first three answers are that nobody has the service."""
+    asked = []
+
+    def look_up(_, service):
+        asked.append(service)
+        return (1, "", "rosrpc://localhost:1") if len(asked) > 3 else (-1, "no provider", "")
+
+    with SimpleXMLRPCServer(("localhost", 0), logRequests=False) as server:
+        server.register_function(look_up, "lookupService")
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        monkeypatch.setenv("ROS_MASTER_URI", f"http://localhost:{server.server_address[1]}")
+        monkeypatch.setattr(master, "POLL_PERIOD", 0.01)
+        yield asked
+        server.shutdown()
+
+
+def test_the_simulator_is_awaited(master_without_simulator):
+    assert wait_for_simulator(os.getpid())
+    assert master_without_simulator == ["/gazebo/get_world_properties"] * 4
+
+
+@pytest.mark.parametrize("reaped", [True, False])
+def test_no_longer_than_its_process_is_there(master_without_simulator, monkeypatch, reaped):
+    monkeypatch.setattr(master, "_has_simulator", lambda _: False)
+    with subprocess.Popen(["true"]) as process:
+        if reaped:
+            process.wait()
+        assert not wait_for_simulator(process.pid)
+
+
+def test_without_a_master_the_process_is_awaited(monkeypatch):
+    monkeypatch.setenv("ROS_MASTER_URI", f"http://localhost:{free_port(0)}")
+    with subprocess.Popen(["sleep", "0.3"]) as process:
+        assert not wait_for_simulator(process.pid)

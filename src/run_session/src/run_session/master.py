@@ -1,6 +1,7 @@
 """ROS masters: which one a command uses, whether it is up, and who is connected to whom.
 
-As a program, for scripts/common.sh: prints the URI of a master that other terminals can join.
+As a program, for scripts/common.sh: prints the URI of a master that other terminals can join; with
+`--wait PID`, waits for the simulator of a process.
 """
 
 from __future__ import annotations
@@ -28,6 +29,8 @@ from bullet_sim_ros.already_running import ImpatientTransport
 from run_session.failure import RunError
 
 ANSWER_TIME = 1.0  # s, wall, for one answer of a node
+SIMULATORS = "/gazebo/get_world_properties"  # the service by which a simulator is known
+POLL_PERIOD = 0.2  # s, wall
 
 
 @dataclass(frozen=True)
@@ -202,5 +205,28 @@ def listens_here(port: int) -> bool:
     return False
 
 
+def wait_for_simulator(process: int) -> bool:
+    """Wait until this master has a simulator; False if the process with this number ends before."""
+    master = xmlrpc.client.ServerProxy(rosgraph.get_master_uri(), ImpatientTransport(ANSWER_TIME))
+    while not _has_simulator(master):
+        try:
+            if psutil.Process(process).status() == psutil.STATUS_ZOMBIE:
+                return False
+        except psutil.NoSuchProcess:
+            return False
+        time.sleep(POLL_PERIOD)
+    return True
+
+
+def _has_simulator(master: xmlrpc.client.ServerProxy) -> bool:
+    try:
+        code, _, _ = master.lookupService("/course_run", SIMULATORS)
+    except (OSError, xmlrpc.client.Error, HTTPException, ExpatError, TypeError, ValueError):
+        return False  # there is no master yet
+    return code == 1
+
+
 if __name__ == "__main__":
+    if sys.argv[1:2] == ["--wait"]:
+        sys.exit(not wait_for_simulator(int(sys.argv[2])))
     print(master_to_join())
