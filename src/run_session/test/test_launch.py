@@ -90,8 +90,8 @@ def test_a_master_that_others_join_is_held_until_it_has_a_simulator(tmp_path, mo
     with Family() as family:
         launched = Launched(family, tmp_path / "log", joined=joined)
         launched.start_roscore()
-        script = f". {ROOT}/scripts/common.sh; flock() {{ command flock -n $3 || echo held; }}; "
-        command = ["bash", "-c", script + "take_turn"]
+        waits = "flock() { if [ $1 = -w ]; then echo held; else command flock $*; fi; }"
+        command = ["bash", "-c", f". {ROOT}/scripts/common.sh; {waits}; take_turn"]
         assert subprocess.run(command, capture_output=True, text=True,
                               check=True).stdout == ("held\n" if joined else "")
         found.append("/gazebo")
