@@ -56,7 +56,8 @@ def test_both_languages_have_the_same_pages_and_a_replay(site):
     assert pages["en"] == pages["zh"] and len(pages["en"]) > 90
     assert (site / "demo/run.html").read_text("utf-8") == OWN
     for language in pages:
-        assert 'src="../demo/run.html"' in (site / language / "demo.html").read_text("utf-8")
+        page = (site / language / "demo.html").read_text("utf-8")
+        assert f'src="../demo/run.html?{language}"' in page
 
 
 def test_every_link_and_anchor_of_the_built_pages_leads_somewhere(site):

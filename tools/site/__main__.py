@@ -44,7 +44,7 @@ DEMO = ("# A drive, to look at\n\nThe line follower's last lap on this machine, 
         "拖动可转动视角，滚轮缩放，下方是时间轴。"
         "先 `make course FAST=1` 再 `make site` 就会换成新的。"
         "<a href=\"../demo/run.html\">单独打开</a>\n\n")
-FRAME = '<iframe class="site-demo" src="../demo/run.html" title="run.html"></iframe>\n'
+FRAME = '<iframe class="site-demo" src="../demo/run.html?{}" title="run.html"></iframe>\n'
 
 
 class SiteError(Exception):
@@ -81,7 +81,8 @@ def all_pages() -> Pages:
     add_reference(pages)
     add_advice(pages)
     add_ros2(pages)
-    pages.add("demo.md", *(text + FRAME for text in DEMO))
+    pages.add("demo.md", *(text + FRAME.format(language)
+                           for text, language in zip(DEMO, ("en", "zh"))))
     return pages
 
 

@@ -1,8 +1,10 @@
-// The page speaks Chinese or English: the browser's language, or what was chosen by the switch.
+// The page speaks Chinese or English: what was chosen by the switch, else what the address asks for
+// (run.html?zh), else the browser's language.
 
 const chosen = localStorage.getItem("language");
+const asked = ["?zh", "?en"].includes(location.search) ? location.search.slice(1) : null;
 
-export const language = chosen ?? (navigator.language.startsWith("zh") ? "zh" : "en");
+export const language = chosen ?? asked ?? (navigator.language.startsWith("zh") ? "zh" : "en");
 
 /** The text in the page's language. */
 export function t(english, chinese) {
