@@ -60,6 +60,16 @@ def test_both_languages_have_the_same_pages_and_a_replay(site):
         assert f'src="../demo/run.html?{language}"' in page
 
 
+def test_the_notebook_is_a_page_in_each_language(site):
+    pages = {language: (site / language / "docs/first-drive.html").read_text("utf-8")
+             for language in ("en", "zh")}
+    for language, own, other in (("en", "Ten steps of 1 ms", "每走十步"),
+                                 ("zh", "每走十步", "Ten steps of 1 ms")):
+        assert own in pages[language] and other not in pages[language]
+        assert "load_course" in pages[language] and "make wheels" in pages[language]
+    assert 'id="the-robot">The robot<' in pages["en"] and ">机器人<" in pages["zh"]
+
+
 def test_every_link_and_anchor_of_the_built_pages_leads_somewhere(site):
     assert faults(site) == []
 

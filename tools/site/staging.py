@@ -5,6 +5,7 @@ The path of a page is that of its English file; a page without a Chinese file is
 
 from __future__ import annotations
 
+import json
 import posixpath
 import re
 import subprocess
@@ -20,10 +21,12 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 LANGUAGES = ("en", "zh")
 CHINESE = ".zh-CN.md"
+NOTEBOOK = ".ipynb"
 PICTURES = (".png", ".webp", ".svg", ".jpg", ".gif")
 LEFT_OUT = re.compile(r"\.github/|tools/|.*/vendor/|.*/models/|test/")
 OTHER_LANGUAGE = re.compile(r"^\[(中文|English)\]\([^)]*\)\n+", re.MULTILINE)
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
+HAN = re.compile(r"[\u4e00-\u9fff]")
 BROKEN = re.compile(r"(?<=[\u3001-\u9fff\uff00-\uffef])\n(?=[\u3001-\u9fff\uff00-\uffef])")
 ROW = re.compile(r"^\|.*\|$", re.MULTILINE)
 CODE = re.compile(r"(^```.*?^```\s*?$|``.+?``|`[^`\n]+`)", re.MULTILINE | re.DOTALL)
@@ -53,11 +56,14 @@ def tracked() -> list[str]:
 
 
 def repository_pages() -> Pages:
-    """All .md files that are for readers."""
-    files = [path for path in tracked() if path.endswith(".md") and (ROOT / path).is_file()
-             and not LEFT_OUT.match(path)]
-    english = [path for path in files if not path.endswith(CHINESE)]
+    """All .md files and notebooks that are for readers."""
+    files = [path for path in tracked() if path.endswith((".md", NOTEBOOK))
+             and (ROOT / path).is_file() and not LEFT_OUT.match(path)]
+    english = [path for path in files if not path.endswith((CHINESE, NOTEBOOK))]
     pages = Pages({language: {} for language in LANGUAGES})
+    for path in set(files).difference(english):
+        if path.endswith(NOTEBOOK):
+            pages.add(path.removesuffix(NOTEBOOK) + ".md", *notebook_texts(ROOT / path))
     for path in english:
         chinese = path.removesuffix(".md") + CHINESE
         for language, source in (("en", path), ("zh", chinese if chinese in files else path)):
@@ -69,6 +75,29 @@ def repository_pages() -> Pages:
         for path, text in texts.items():
             texts[path] = _with_links(text, path, pages, language)
     return pages
+
+
+def notebook_texts(path: Path) -> list[str]:
+    """A notebook, without results, in English and in Chinese.
+
+    A paragraph is in one language; a heading has both, English first; code is the same in both.
+    """
+    texts: list[list[str]] = [[], []]
+    for cell in json.loads(path.read_text("utf-8"))["cells"]:
+        source = "".join(cell["source"])
+        parts = ([f"```python\n{source}\n```"] if cell["cell_type"] == "code"
+                 else source.split("\n\n"))
+        for part in parts:
+            english, slash, chinese = part.partition(" / ")
+            if part.startswith("```"):
+                both = (part, part)
+            elif part.startswith("#") and slash:
+                both = (english, f"{english[:english.index(' ')]} {chinese}")
+            else:
+                both = ("", part) if HAN.search(part) else (part, "")
+            for text, words in zip(texts, both):
+                text += [words] if words else []
+    return ["\n\n".join(text) + "\n" for text in texts]
 
 
 def _anchors(text: str) -> list[str]:
@@ -98,7 +127,7 @@ def _with_links(text: str, page: str, pages: Pages, language: str) -> str:
         if "://" in target or not path:
             return f"{shown}[{label}]({target})"
         path = posixpath.normpath(posixpath.join(folder, path))
-        for name in (path.removesuffix(CHINESE) + ".md" if path.endswith(CHINESE) else path,
+        for name in (re.sub(rf"({CHINESE}|{NOTEBOOK})$", ".md", path),
                      posixpath.join(path, "README.md")):
             if name in paths:
                 to = posixpath.relpath(name, folder or ".")
