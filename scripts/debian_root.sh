@@ -12,6 +12,7 @@ if [[ ${1:-} != --* ]]; then  # before common.sh changes it, and where that Debi
   environment=$(umask 077; mktemp /tmp/environment.XXXXXX) && env -0 > "$environment" || exit 2
 fi
 trap 'rm -f "$environment"' EXIT
+trap 'trap - INT; kill -INT $$' INT  # also where what runs has taken Ctrl-C for a fault of its own
 on_any_linux=yes stays_root=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 . "$root/scripts/setup/logged.sh"
@@ -20,6 +21,7 @@ self=${1%.sh}
 place=/var/lib/ros1-driving-courses debian=/var/lib/ros1-driving-courses/debian
 rule=/etc/sudoers.d/ros1-driving-courses
 release=bookworm
+architecture=$(uname -m | sed 's/x86_64/amd64/; s/aarch64/arm64/')  # which a Linux without dpkg cannot tell debootstrap
 disk_mb=3300  # measured: 310 of Debian itself, then what setup installs
 keyring=/usr/share/keyrings/debian-archive-keyring.gpg
 
@@ -42,6 +44,10 @@ folders() {
     esac
   done | sort -u
 }
+by_package_manager() {
+  [ "$1" != apt-get ] || apt-get -q update || true
+  "$@"
+}
 install_debootstrap() {
   local how=
   if command -v debootstrap > /dev/null && [ -f "$keyring" ]; then return; fi
@@ -50,9 +56,14 @@ install_debootstrap() {
   elif command -v pacman > /dev/null; then how='pacman -S --noconfirm --needed debootstrap debian-archive-keyring'
   elif command -v zypper > /dev/null; then how='zypper -n install debootstrap debian-archive-keyring'
   else fail $"install debootstrap and debian-archive-keyring by this Linux's own package manager, then type this again"; fi
-  [ "${how%% *}" != apt-get ] || logged apt-update apt-get -q update || true
-  logged debootstrap-install $how || fail_with_log $"this failed: $how" debootstrap-install
+  logged debootstrap-install by_package_manager $how || explain $"this failed: $how" debootstrap-install
   [ -f "$keyring" ] || fail $"$keyring is missing: install the package debian-archive-keyring, then type this again"
+}
+# fail, with what to do where there is no network, or the last error line of a log.
+explain() {
+  local log=$state/$2.log
+  ! network_failed "$2" || fail $"the package archive cannot be reached ($log says more): connect, or correct MIRROR=, then type this again"
+  fail_with_log "$1" "$2"
 }
 make_debian() {
   local user=$1 new=$debian.new free line
@@ -65,10 +76,10 @@ make_debian() {
     use_mirror "$state" "$release"
     install_debootstrap
     rm -rf --one-file-system "$new" "$debian"
-    doing=$"debootstrap is still running" logged debootstrap debootstrap --variant=minbase --keyring="$keyring" \
+    doing=$"debootstrap is still running" logged debootstrap debootstrap --arch="$architecture" --variant=minbase --keyring="$keyring" \
       --include=ca-certificates,git,make,procps,sudo "$release" "$new" ${archive:+"$archive"} ||
-      { rm -rf --one-file-system "$new"; fail_with_log $"debootstrap could not make a Debian" debootstrap; }
-    sed -i "s/\(.*\) $release main/&\n\1 $release-updates main/" "$new/etc/apt/sources.list"
+      { rm -rf --one-file-system "$new"; explain $"debootstrap could not make a Debian" debootstrap; }
+    sed -i "s/\(.*\) $release main/&\n\1 $release-updates main\n\1-security $release-security main/" "$new/etc/apt/sources.list"
     echo $release > "$new/etc/ros1-driving-courses"  # by which setup knows where it is
     mv "$new" "$debian"
   fi

@@ -34,6 +34,14 @@ def test_a_full_tmp_is_one_line() -> None:
         1, "a: /tmp is full, or cannot be written: make room there, then type this again\n")
 
 
+def test_chinese_is_not_under_the_name_for_which_glibc_translates_nothing() -> None:
+    done = subprocess.run(
+        ["bash", "-c", '. scripts/common.sh; echo "$LC_ALL"; locale charmap'], cwd=ROOT, text=True,
+        capture_output=True, check=True, env={**os.environ, "LANGUAGE": "zh_CN", "LANG": "C.UTF-8"})
+    name, charmap = done.stdout.split()
+    assert not name.startswith("C.") and charmap == "UTF-8" and done.stderr == ""
+
+
 @pytest.mark.parametrize("has_ros", [True, False])
 def test_ros_writes_below_the_home(tmp_path: Path, has_ros: bool) -> None:
     if has_ros:

@@ -85,8 +85,11 @@ def test_elsewhere_a_debian_is_made_once_and_the_script_runs_in_it(tmp_path, os_
     assert "has no ROS 1: a Debian 12 goes into" in first.stdout
     made = (machine.place / "debian/made").read_text()
     assert f"--keyring={tmp_path}/debian-archive-keyring.gpg" in made and "bookworm" in made
+    architecture = {"x86_64": "amd64", "aarch64": "arm64"}[os.uname().machine]
+    assert f"--arch={architecture}" in made
     assert (machine.place / "debian/etc/apt/sources.list").read_text() == (
-        "deb http://archive bookworm main\ndeb http://archive bookworm-updates main\n")
+        "deb http://archive bookworm main\ndeb http://archive bookworm-updates main\n"
+        "deb http://archive-security bookworm-security main\n")
     again = machine.run("course.sh", "--laps", "2 3", GREETING="good day")
     assert (again.returncode, again.stdout) == (0, entered)
     assert not list(tmp_path.glob("environment.*"))
@@ -122,9 +125,10 @@ def test_a_folder_that_is_not_in_there_yet_is_added(tmp_path):
 
 
 @pytest.mark.parametrize(("program", "text", "said"), [
-    ("debootstrap", "echo 'E: Failed getting release file'; exit 1",
-     "debootstrap could not make a Debian: E: Failed getting release file "
-     "(full log: var/log/debootstrap.log)"),
+    ("debootstrap", "echo 'E: No space left'; exit 1",
+     "debootstrap could not make a Debian: E: No space left (full log: var/log/debootstrap.log)"),
+    ("debootstrap", "echo 'E: Failed getting release file http://x/Release'; exit 1",
+     "var/log/debootstrap.log says more): connect, or correct MIRROR=, then type this again"),
     ("df", "printf 'x\\nx x x 100\\n'", "100 MB free, 3300 MB are needed"),
     ("sudo", "echo 'sudo: a password is required' >&2; exit 1", "a password is required"),
     ("uname", "echo riscv64", "needs Linux on a 64-bit Intel, AMD or ARM processor"),
@@ -142,6 +146,33 @@ def test_what_fails_is_said_and_the_next_call_goes_on(tmp_path, program, text, s
     (machine.programs / program).unlink()
     if kept:
         machine.program(program, kept)
+    assert machine.run("course.sh").returncode == 0
+
+
+def test_without_a_network_the_package_manager_is_not_what_failed(tmp_path):
+    machine = Machine(tmp_path, UBUNTU)
+    machine.forget_what_root_does()
+    (tmp_path / "debian-archive-keyring.gpg").unlink()
+    machine.program("apt-get", """case "$*" in *update)
+        echo "W: Failed to fetch http://x/InRelease  Could not resolve 'x'";;
+        *) echo 'E: Unable to locate package debootstrap'; exit 100; esac""")
+    done = machine.run("course.sh")
+    assert "debootstrap-install.log says more): connect" in done.stderr.splitlines()[-1]
+
+
+def test_ctrl_c_ends_it_without_a_word_and_the_next_call_goes_on(tmp_path):
+    machine = Machine(tmp_path, UBUNTU)
+    machine.forget_what_root_does()
+    kept = (machine.programs / "debootstrap").read_text().partition("\n")[2]
+    # As debootstrap does.
+    machine.program("debootstrap", "trap 'echo E: Interrupt caught; exit 1' INT; kill -INT 0\n"
+                    "sleep 9")
+    done = subprocess.run(["setsid", "-w", "scripts/course.sh"], cwd=tmp_path, text=True,
+                          capture_output=True, env={**os.environ, "LANGUAGE": "en"}, timeout=60,
+                          check=False)
+    assert done.returncode in (-2, 130) and done.stderr == ""
+    assert not list(tmp_path.glob("environment.*"))
+    machine.program("debootstrap", kept)
     assert machine.run("course.sh").returncode == 0
 
 

@@ -29,5 +29,5 @@ fail_with_cause() {
   fail "$1 "$"(full log: .setup/build.log)"
 }
 network_failed() {
-  grep -qaE 'Temporary failure|Could not resolve|Failed to fetch|Could not connect|Network is unreachable|Connection (refused|timed out)|NewConnectionError|ConnectTimeout|NameResolution|ProxyError|Max retries|Retry\(total=0,' "$state/$1.log"
+  grep -qaE 'Temporary failure|Could(n.t| not) resolve|Failed to fetch|Failed getting release file|Couldn.t download|Could not connect|Network is unreachable|Connection (refused|timed out)|NewConnectionError|ConnectTimeout|NameResolution|ProxyError|Max retries|Retry\(total=0,' "$state/$1.log"
 }
