@@ -16,6 +16,7 @@ trap 'trap - INT; kill -INT $$' INT  # also where what runs has taken Ctrl-C for
 on_any_linux=yes stays_root=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 . "$root/scripts/setup/logged.sh"
+. "$root/scripts/setup/machine.sh"
 . "$root/scripts/setup/mirror.sh"
 self=${1%.sh}
 place=/var/lib/ros1-driving-courses debian=/var/lib/ros1-driving-courses/debian
@@ -119,6 +120,7 @@ case "$(uname -s)-$(uname -m)" in
   *) fail $"this is ${this:-$(uname -sm)}, but this needs Linux on a 64-bit Intel, AMD or ARM processor: use docker/ in this repository" ;;
 esac
 [ "$(id -u)" != 0 ] || fail $"this is $this, where a Debian of its own is needed, and that is for a user with sudo, not for root; or use docker/ in this repository"
+check_folder
 mapfile -t needed < <(folders)
 if ! is_ready "${needed[@]}"; then
   command -v sudo > /dev/null || fail $"this is $this, where a Debian of its own is needed, and there is no sudo; or use docker/ in this repository"

@@ -149,6 +149,16 @@ def test_what_fails_is_said_and_the_next_call_goes_on(tmp_path, program, text, s
     assert machine.run("course.sh").returncode == 0
 
 
+def test_a_folder_that_setup_refuses_is_refused_before_a_debian_is_made(tmp_path):
+    folder = tmp_path / "course#1"
+    folder.mkdir()
+    machine = Machine(folder, UBUNTU)
+    machine.forget_what_root_does()
+    done = machine.run("course.sh")
+    assert done.returncode != 0 and done.stderr.count("\n") == 1 and not machine.place.exists()
+    assert "which catkin cannot handle: move the folder" in done.stderr
+
+
 def test_without_a_network_the_package_manager_is_not_what_failed(tmp_path):
     machine = Machine(tmp_path, UBUNTU)
     machine.forget_what_root_does()

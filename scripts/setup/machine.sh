@@ -10,11 +10,15 @@ check_machine() {
   platform=$codename-$architecture lists=$root/dependencies/$codename-$architecture
   [ -d "$lists" ] ||
     fail $"this machine's architecture is $architecture, but Numba, ONNX Runtime and OpenCV are built for $builds_only_for only"
+  check_folder
+  [ -w "$root" ] || { owner=$(stat -c %U "$root"); fail $"you ($(id -un)) may not write to $root: run this as its owner, $owner"; }
+}
+
+check_folder() {
   case "$root" in
     *[[:space:]:\;\"\'\$\&\#\(\)\\]*)
       fail $"the folder's name \"$root\" has a space or one of : ; \" ' \$ & # ( ) \\, which catkin cannot handle: move the folder" ;;
   esac
-  [ -w "$root" ] || { owner=$(stat -c %U "$root"); fail $"you ($(id -un)) may not write to $root: run this as its owner, $owner"; }
 }
 
 free_mb() { df -Pm "$1" 2>/dev/null | awk 'NR==2 {print $4}'; }
