@@ -8,6 +8,7 @@
 #   scripts/help.sh --no-switch NAME=...       says what these options may be
 #   scripts/help.sh --no-number COMMAND NAME=VALUE...  the same of the first that is no number, or 0 where that cannot
 #                                                      be, if any; all of these for the Makefiles
+#   scripts/help.sh --no-ros                   what to type in a terminal outside of the Debian that has ROS
 on_any_linux=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 
@@ -56,6 +57,8 @@ case "${1:-}" in
         *) [[ $given =~ ^[A-Z_]+=[0-9]+$ ]] || { say $"$given: write a whole number, or leave it out"; break; } ;;
       esac
     done ;;
+  --no-ros)
+    echo $"This terminal has no ROS. One that has: make -sC $root shell" >&2 ;;
   *)
     version=$(our_version)
     echo $"ROS 1 driving courses, version $version"

@@ -63,5 +63,5 @@ python_packages
 [ "$bashrc" = no ] || source_in_bashrc
 if [ "$did$build" = yesyes ] && ! grep -qsxF "$(bashrc_line)" "${HOME:-}/.bashrc"; then
   line=$(terminal_line)
-  say $"In each new terminal type: $line (make setup BASHRC=1 writes this line into ~/.bashrc)"
+  say $"In each new terminal type: $line (or, once for all: make setup BASHRC=1)"
 fi

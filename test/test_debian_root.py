@@ -202,6 +202,34 @@ def test_a_terminal_of_the_machine_enters_by_a_word(tmp_path, inside, line, writ
     assert (tmp_path / ".bashrc").read_text() == f"{written.format(ROOT)}\n"
 
 
+@pytest.mark.parametrize(("language", "told"), [
+    ("en", "This terminal has no ROS. One that has: make -sC {} shell\n"),
+    ("zh_CN", "这个终端里没有 ROS。请输入：make -sC {} shell\n")])
+def test_a_workspace_that_is_sourced_outside_says_where_to_type(tmp_path, language, told):
+    (tmp_path / "devel").mkdir()
+    sourced = tmp_path / "devel/setup.bash"
+    sourced.write_text("echo sourced\n")
+    shutil.copytree(ROOT / "scripts", tmp_path / "scripts")
+    (tmp_path / "src").symlink_to(ROOT / "src")
+    text = (ROOT / "scripts/setup/workspace.sh").read_text("utf-8")
+    (tmp_path / "workspace.sh").write_text(
+        text.replace("/etc/ros1-driving-courses", f"{tmp_path}/inside"))
+
+    def run(words: str) -> subprocess.CompletedProcess:
+        return subprocess.run(
+            ["bash", "-c", words, "bash", tmp_path], text=True, capture_output=True, check=False,
+            env={**os.environ, "LANGUAGE": language, "LANG": "C.UTF-8"})
+
+    mark = 'root=$1; . "$1/workspace.sh"; refuse_other_terminals'
+    assert run(mark).returncode == 0 and sourced.read_text() == "echo sourced\n"
+    (tmp_path / "inside").touch()
+    assert run(mark).returncode == 0
+    assert run('. "$1/devel/setup.bash"').stdout == "sourced\n"
+    (tmp_path / "inside").unlink()
+    done = run('. "$1/devel/setup.bash"')
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", told.format(tmp_path))
+
+
 def test_it_is_removed_by_one_command(tmp_path):
     machine = Machine(tmp_path, UBUNTU)
     machine.forget_what_root_does()

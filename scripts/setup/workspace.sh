@@ -42,8 +42,14 @@ build_workspace() {
     PYTHONPATH=src/navigation/nav_algorithms/src logged compile "$venv/bin/python3" -m nav_algorithms.warm_up ||
       fail_with_log $"compiling the inner loops of navigation failed" compile
   fi
+  refuse_other_terminals
   mv "$state/build-inputs.now" "$state/build-inputs"
   rm -f "$state/build-unfinished"
+}
+# Sourced outside of the Debian in which it was built, devel/setup.bash says what to type instead.
+refuse_other_terminals() {
+  [ -e /etc/ros1-driving-courses ] || return 0
+  sed -i "1i [ -e /etc/ros1-driving-courses ] || { '$root/scripts/help.sh' --no-ros; return 1; }" "$root/devel/setup.bash"
 }
 # What rosrun finds where the lessons' C++ programs are not built: a line that says how to build them.
 cpp_stand_ins() {
