@@ -21,7 +21,7 @@ our_version() { sed -n 's/^__version__ = "\(.*\)".*/\1/p' "$root/src/sim/bullet_
 
 # `sudo make course` would leave root's files in a user's folder: continue as that user.
 if [ "$(id -u)" = 0 ] && [ -z "${stays_root:-}" ] && [ -n "${SUDO_USER:-}" ] && [ "$(stat -c %U "$root")" = "$SUDO_USER" ]; then
-  exec sudo -u "$SUDO_USER" -H -- "$root/scripts/$(basename "$0")" "$@"
+  exec sudo -u "$SUDO_USER" -H -- env ${MIRROR:+"MIRROR=$MIRROR"} ${PIP_INDEX_URL:+"PIP_INDEX_URL=$PIP_INDEX_URL"} "$root/scripts/$(basename "$0")" "$@"
 fi
 
 # On a Linux that is none of the Debians in dependencies/ (which an installed package lacks) a Debian of its own runs the script.
@@ -64,22 +64,23 @@ if os.getpgrp() == os.getsid(0):
     os.kill(int(sys.argv[1]), 1)' $$ < /dev/tty > /dev/null 2>&1 &
 }
 
-# Refuses a name that the program would refuse after setup, which may take minutes: KIND VARIABLE NAME, and the known ones;
-# without any the program looks.
+# Refuses a name that the program would refuse after setup, which may take minutes: the name, how the line begins, and the
+# known names; without any the program looks.
 known() {
-  local kind=$1 variable=$2 name=$3 there
-  shift 3
-  there=$(printf ', %s' "$@"); there=${there#, }
-  [ -z "$there" ] || [[ ", $there, " == *", $name, "* ]] || fail $"no $kind '$name' ($variable=); there are: $there"
+  local name=$1 line=$2 each there
+  shift 2
+  for each in "$@"; do [ "$each" != "$name" ] || return 0; done
+  there=$(printf ', %s' "$@")
+  [ $# -eq 0 ] || fail "$line ${there#, }"
 }
 # The words between quotation marks from a file's line with this to one with that.
 quoted_words() { sed -n "\|$2|,\|$3|p" "$root/$1" 2> /dev/null | grep -oE '^ *"[a-z_]+"|, "[a-z_]+"' | tr -d ', "'; }
 # A key's value in a course's file.
 course_key() { sed -n "s/^$2: *\([^ #]*\).*/\1/p" "$root/src/evaluation/courses/$1.yaml" 2> /dev/null; }
 followers() {
-  local package pattern
-  package=$(course_key "$1" follower_package) pattern=$(course_key "$1" followers)
-  (cd "$root"/src/"$package"/"${pattern%/*}" 2> /dev/null && grep -lF -e "$(course_key "$1" drives_by)" ${pattern##*/})
+  local package pattern drives_by
+  package=$(course_key "$1" follower_package) pattern=$(course_key "$1" followers) drives_by=$(course_key "$1" drives_by)
+  [ -z "$drives_by" ] || (cd "$root"/src/"$package"/"${pattern%/*}" && grep -lF -e "$drives_by" -- ${pattern##*/}) 2> /dev/null
 }
 
 # Sets up what a trial with these arguments needs.
@@ -98,13 +99,14 @@ take_turn() {
   if ! flock -n "$turn"; then
     local number= name= words=() age
     read -r number < "$lock" || true
+    [[ $number =~ ^[0-9]+$ ]] || number=
     [ -z "$number" ] || { mapfile -d '' -t words < "/proc/$number/cmdline"; } 2> /dev/null || true
     number=${number:-?} name=${words[1]:-?} age=$(($(date +%s) - $(stat -c %Y "$lock")))
     name=${name##*/}
     say $"Waiting: $name (process $number) has been starting its simulator for $age s" >&2
     flock -w 300 "$turn" || return 0
   fi
-  printf '%s\n' $$ > "$lock"
+  printf '%s\n' $$ 2> /dev/null > "$lock" || true  # who holds it, for the others' line; the disk may be full
 }
 
 # Waits for the simulator of this process, and ends the turn; fails if the process ends before.

@@ -1,35 +1,39 @@
-"""Adds manifest.json to an OCI archive, so that every Docker loads it (docker save writes both).
+"""Packs an OCI layout as an archive that every Docker loads (docker save writes such, too).
 
-    loadable_image.py ARCHIVE NAME:TAG...
+    loadable_image.py FOLDER ARCHIVE
 
-Docker's own store of images reads no OCI layout, but only this list: the image's configuration and
-its layers, which may be compressed, and the names that it gets.
+Docker's own store of images reads no OCI layout, but manifest.json: the image's configuration and
+its layers, which may be compressed, and its names. containerd's takes the names from annotations.
 """
 
-import io
 import json
 import sys
 import tarfile
+from pathlib import Path
+
+NAME = "org.opencontainers.image.ref.name"  # as buildah writes it: NAME:TAG
 
 
-def add_manifest(archive: str, names: list[str]) -> None:
-    """Append manifest.json to the archive of one image. Raises KeyError if it is no OCI layout."""
-    def blob(digest: str) -> str:
-        return "blobs/" + digest.replace(":", "/")
+def pack(layout: Path, archive: Path) -> None:
+    """Pack the one image that the layout has under one or more names."""
+    index = json.loads((layout / "index.json").read_text(encoding="utf-8"))
+    names = [image["annotations"][NAME] for image in index["manifests"]]
+    (digest,) = {image["digest"] for image in index["manifests"]}
+    for image, name in zip(index["manifests"], names):
+        image["annotations"]["io.containerd.image.name"] = f"docker.io/library/{name}"
+    manifest = json.loads((layout / _blob(digest)).read_text(encoding="utf-8"))
+    docker = [{"Config": _blob(manifest["config"]["digest"]), "RepoTags": names,
+               "Layers": [_blob(layer["digest"]) for layer in manifest["layers"]]}]
+    for name, content in (("index.json", index), ("manifest.json", docker)):
+        (layout / name).write_text(json.dumps(content), encoding="utf-8")
+    with tarfile.open(archive, "w") as tar:
+        for entry in sorted(layout.iterdir()):
+            tar.add(entry, entry.name)
 
-    with tarfile.open(archive) as tar:
-        def read(path: str) -> dict:
-            return json.load(tar.extractfile(path))
-        (image,) = read("index.json")["manifests"]
-        manifest = read(blob(image["digest"]))
-    layers = [blob(layer["digest"]) for layer in manifest["layers"]]
-    text = json.dumps([{"Config": blob(manifest["config"]["digest"]), "RepoTags": names,
-                        "Layers": layers}]).encode()
-    entry = tarfile.TarInfo("manifest.json")
-    entry.size = len(text)
-    with tarfile.open(archive, "a") as tar:
-        tar.addfile(entry, io.BytesIO(text))
+
+def _blob(digest: str) -> str:
+    return "blobs/" + digest.replace(":", "/")
 
 
 if __name__ == "__main__":
-    add_manifest(sys.argv[1], sys.argv[2:])
+    pack(Path(sys.argv[1]), Path(sys.argv[2]))

@@ -13,7 +13,7 @@ command -v buildah >/dev/null || fail $"images are pushed by buildah; type: sudo
 for file in "${@:3}"; do [ -f "$file" ] || fail $"there is no $file"; done
 trap 'buildah manifest rm "$list" >/dev/null 2>&1 || true' EXIT
 buildah manifest create "$list" >/dev/null
-for file in "${@:3}"; do buildah manifest add "$list" "oci-archive:$file" >/dev/null; done
+for file in "${@:3}"; do buildah manifest add "$list" "oci-archive:$file:ros1-driving-courses:$version-$suite" >/dev/null; done
 for tag in "$version-$suite" "$suite"; do
   buildah manifest push --quiet --all "$list" "$destination:$tag"
   say "$destination:$tag"

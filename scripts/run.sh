@@ -22,20 +22,21 @@
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 words=("$@") course=course
+for at in "${!words[@]}"; do [ "${words[at]}" != --course ] || course=${words[at + 1]:-}; done
 for at in "${!words[@]}"; do
   value=${words[at + 1]:-}
   case "$self ${words[at]}" in
-    "course --course") course=$value ;;
     "course --follower")
-      [[ " $* " == *" --launch "* ]] || known follower FOLLOWER "$value" $(followers "$course") ;;
+      mapfile -t names < <(followers "$course")
+      [[ " $* " == *" --launch "* ]] || known "$value" $"no follower '$value' (FOLLOWER=); there are:" "${names[@]}" ;;
     "course --camera")
       [[ $value =~ ^[1-9][0-9]{0,4}x[1-9][0-9]{0,4}$ ]] ||
         fail $"--camera (CAMERA=) must be WIDTHxHEIGHT in px, as 640x480; got '$value'" ;;
     "track --scene")
-      known scene SCENE "$value" $(quoted_words src/lessons/ai_robot_tracking/src/ai_robot_tracking/scenes/scene.py "KINDS = (" ")") ;;
-    "autorace --mission") known mission MISSION "$value" $(quoted_words src/evaluation/src/evaluation/autorace.py "^TASKS = {" "^}") all ;;
-    "chaos --course") known course COURSE "$value" course race lane_empty ;;
-    "soak --course") known course COURSE "$value" course race navigation ;;
+      known "$value" $"no scene '$value' (SCENE=); there are:" $(quoted_words src/lessons/ai_robot_tracking/src/ai_robot_tracking/scenes/scene.py "KINDS = (" ")") ;;
+    "autorace --mission") known "$value" $"no mission '$value' (MISSION=); there are:" $(quoted_words src/evaluation/src/evaluation/autorace.py "^TASKS = {" "^}") all ;;
+    "chaos --course") known "$value" $"no course '$value' (COURSE=); there are:" course race lane_empty ;;
+    "soak --course") known "$value" $"no course '$value' (COURSE=); there are:" course race navigation ;;
   esac
 done
 case $self in

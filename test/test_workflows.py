@@ -1,7 +1,6 @@
 """.github/workflows and the scripts of a release, as far as can be seen without that service."""
 
 import importlib.util
-import io
 import json
 import os
 import re
@@ -95,6 +94,21 @@ def test_an_image_needs_a_release_that_is_there() -> None:
     assert refused.stderr == "image: SUITE=noble: there are bookworm and trixie\n"
 
 
+@pytest.mark.parametrize("words", (["--suite"], ["trixie"], ["--suite", "trixie", "--now"]))
+def test_an_image_takes_one_option(words: list[str]) -> None:
+    refused = script("image.sh", *words)
+    assert refused.returncode == 1 and refused.stderr.startswith(
+        ("image: unknown option", "image: SUITE="))
+
+
+def test_what_packages_come_from_reaches_the_image(tmp_path: Path) -> None:
+    buildah = f'buildah() {{ echo "$@" >{tmp_path}/used; exit 1; }}; export -f buildah; '
+    subprocess.run(["bash", "-c", f"{buildah} exec {ROOT}/scripts/image.sh"], check=False,
+                   env={**os.environ, "MIRROR": "cn", "PIP_INDEX_URL": "http://index"})
+    used = (tmp_path / "used").read_text(encoding="utf-8")
+    assert "--build-arg MIRROR=cn" in used and "--build-arg PIP_INDEX_URL=http://index" in used
+
+
 def test_a_file_that_is_not_there_is_named_before_anything_is_pushed(tmp_path: Path) -> None:
     buildah = tmp_path / "buildah"
     buildah.write_text(f"#!/bin/sh\necho used >>{tmp_path}/used\n", encoding="utf-8")
@@ -115,32 +129,27 @@ def test_a_file_that_is_not_there_is_named_before_anything_is_pushed(tmp_path: P
     assert not (tmp_path / "used").exists()
 
 
-def oci_archive(path: Path) -> dict[str, str]:
-    """Write an archive of one image with two layers; returns its blobs' digests by name."""
-    digests = {name: f"sha256:{number:064x}" for number, name in
-               enumerate(("manifest", "config", "first", "second"))}
-    manifest = {"config": {"digest": digests["config"]},
-                "layers": [{"digest": digests["first"]}, {"digest": digests["second"]}]}
-    index = {"manifests": [{"digest": digests["manifest"]}]}
-    texts = {"index.json": index, f"blobs/{digests['manifest'].replace(':', '/')}": manifest}
-    with tarfile.open(path, "w") as tar:
-        for name, content in texts.items():
-            data = json.dumps(content).encode()
-            entry = tarfile.TarInfo(name)
-            entry.size = len(data)
-            tar.addfile(entry, io.BytesIO(data))
-    return digests
-
-
-def test_an_oci_archive_gets_the_list_by_which_docker_loads_it(tmp_path: Path) -> None:
+def test_an_archive_has_all_names_by_which_docker_loads_it(tmp_path: Path) -> None:
     spec = importlib.util.spec_from_file_location("loadable", ROOT / "scripts/loadable_image.py")
     loadable = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(loadable)
-    digests = oci_archive(tmp_path / "image.tar")
-    loadable.add_manifest(str(tmp_path / "image.tar"), ["courses:1", "courses:new"])
+    blobs = {name: f"sha256:{number:064x}" for number, name in
+             enumerate(("manifest", "config", "first", "second"))}
+    paths = {name: f"blobs/{digest.replace(':', '/')}" for name, digest in blobs.items()}
+    layout = tmp_path / "layout"
+    (layout / "blobs/sha256").mkdir(parents=True)
+    (layout / paths["manifest"]).write_text(json.dumps({
+        "config": {"digest": blobs["config"]},
+        "layers": [{"digest": blobs["first"]}, {"digest": blobs["second"]}]}), encoding="utf-8")
+    (layout / "index.json").write_text(json.dumps({"manifests": [
+        {"digest": blobs["manifest"], "annotations": {loadable.NAME: name}}
+        for name in ("courses:1", "courses:new")]}), encoding="utf-8")
+    loadable.pack(layout, tmp_path / "image.tar")
     with tarfile.open(tmp_path / "image.tar") as tar:
         (entry,) = json.load(tar.extractfile("manifest.json"))
-        assert "index.json" in tar.getnames()
-    blobs = {name: f"blobs/{digest.replace(':', '/')}" for name, digest in digests.items()}
-    assert entry == {"Config": blobs["config"], "RepoTags": ["courses:1", "courses:new"],
-                     "Layers": [blobs["first"], blobs["second"]]}
+        index = json.load(tar.extractfile("index.json"))["manifests"]
+        assert paths["manifest"] in tar.getnames()
+    assert entry == {"Config": paths["config"], "RepoTags": ["courses:1", "courses:new"],
+                     "Layers": [paths["first"], paths["second"]]}
+    assert [image["annotations"]["io.containerd.image.name"] for image in index] == [
+        "docker.io/library/courses:1", "docker.io/library/courses:new"]

@@ -21,6 +21,8 @@ def followers(course):
      f"course: no follower '5.py' (FOLLOWER=); there are: {', '.join(followers('course'))}"),
     (["course", "--course", "race", "--follower", ""],
      f"course: no follower '' (FOLLOWER=); there are: {', '.join(followers('race'))}"),
+    (["course", "--follower", "5.py", "--course", "race"],
+     f"course: no follower '5.py' (FOLLOWER=); there are: {', '.join(followers('race'))}"),
     (["course", "--laps", "1", "--camera", "640"],
      "course: --camera (CAMERA=) must be WIDTHxHEIGHT in px, as 640x480; got '640'"),
     (["track", "--scene", "dark"],
@@ -34,13 +36,27 @@ def followers(course):
     (["mark", "--course", "x"],
      "mark: --course (COURSE=) must be one of course, race, lane, is 'x'")])
 def test_a_wrong_name_is_refused_before_setup(words, line, tmp_path):
-    (tmp_path / "scripts").mkdir()
+    assert with_a_setup_that_fails(words, tmp_path) == (2, f"{line}\n")
+
+
+@pytest.mark.parametrize("words", [
+    ["--course", "nope", "--follower", "x"],
+    ["--follower", followers("race")[0], "--course", "race"]])
+def test_what_is_not_known_here_is_the_programs_to_refuse(words, tmp_path):
+    """An unknown course, and a follower of the course that is named after it."""
+    assert with_a_setup_that_fails(["course", *words], tmp_path) == (2, "setup\n")
+
+
+def with_a_setup_that_fails(words, folder):
+    """Exit code and stderr of a script, whose setup says "setup" and fails."""
+    (folder / "scripts").mkdir()
     for script in SCRIPTS.glob("*.sh"):
-        (tmp_path / "scripts" / script.name).symlink_to(script)
-    (tmp_path / "scripts/setup.sh").unlink()
-    (tmp_path / "scripts/setup.sh").write_text("#!/bin/sh\necho setup >&2\n")
-    (tmp_path / "scripts/setup.sh").chmod(0o755)
-    (tmp_path / "src").symlink_to(SCRIPTS.parent / "src")
-    done = subprocess.run([tmp_path / "scripts" / f"{words[0]}.sh", *words[1:]], text=True,
-                          capture_output=True, timeout=60)
-    assert (done.returncode, done.stdout, done.stderr) == (2, "", f"{line}\n")
+        (folder / "scripts" / script.name).symlink_to(script)
+    (folder / "scripts/setup.sh").unlink()
+    (folder / "scripts/setup.sh").write_text("#!/bin/sh\necho setup >&2\nexit 1\n")
+    (folder / "scripts/setup.sh").chmod(0o755)
+    (folder / "src").symlink_to(SCRIPTS.parent / "src")
+    done = subprocess.run([folder / "scripts" / f"{words[0]}.sh", *words[1:]], text=True,
+                          stdin=subprocess.PIPE, capture_output=True, timeout=60)
+    assert done.stdout == ""
+    return done.returncode, done.stderr
