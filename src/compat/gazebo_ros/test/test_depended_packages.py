@@ -21,7 +21,7 @@ ROBOT = """<launch>
   <param name="robot_description"
          value="&lt;robot name='one'&gt;&lt;link name='a'/&gt;&lt;/robot&gt;"/>
   <node name="robot_state_publisher" pkg="robot_state_publisher" type="robot_state_publisher"
-        output="screen"/>
+        respawn="true" output="screen"/>
 </launch>"""
 
 
@@ -60,7 +60,7 @@ def test_robot_state_publisher_starts_by_both_its_names(name):
     assert ("deprecated" in ended.stderr) == (name == "state_publisher")
 
 
-def test_a_second_robot_state_publisher_ends_and_the_first_notices_nothing(tmp_path):
+def test_a_second_robot_state_publisher_waits_and_the_first_notices_nothing(tmp_path):
     # course, then `roslaunch turtlebot3_gazebo turtlebot3_gazebo_rviz.launch`: roscpp ends both
     robot = tmp_path / "robot.launch"
     robot.write_text(ROBOT)
@@ -68,22 +68,38 @@ def test_a_second_robot_state_publisher_ends_and_the_first_notices_nothing(tmp_p
         free.bind(("localhost", 0))
         port = str(free.getsockname()[1])
     there = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
-    first = subprocess.Popen(["roslaunch", "-p", port, robot], env=there, text=True,
-                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    try:
+    started = []
+
+    def start(*command):
+        log = tmp_path / f"log{len(started)}"
+        with log.open("w") as file:
+            started.append(subprocess.Popen(command, env=there, stdout=file, stderr=file))
+        return log
+
+    def wait_until(condition):
         until = time.monotonic() + 60
-        while "/robot_state_publisher" not in nodes(there):
+        while not condition():
             assert time.monotonic() < until
-        second = subprocess.run(["roslaunch", robot], env=there, capture_output=True, text=True,
-                                timeout=60, check=False)
-        assert "robot_state_publisher runs already on this master (/robot_state_publisher)" in \
-            second.stderr
-        assert "Shutdown request" not in second.stderr
+            time.sleep(0.2)
+
+    start("roscore", "-p", port)
+    try:
+        wait_until(lambda: "/rosout" in nodes(there))
+        first = start("roslaunch", robot)
+        wait_until(lambda: "/robot_state_publisher" in nodes(there))
+        second = start("roslaunch", robot)
+        line = "robot_state_publisher runs already on this master (/robot_state_publisher)"
+        wait_until(lambda: line in second.read_text())
         assert "/robot_state_publisher" in nodes(there)
+        started[1].send_signal(signal.SIGINT)
+        started[1].wait(60)
+        wait_until(lambda: "/robot_state_publisher" in nodes(there))  # the second
+        assert second.read_text().count(line) == 1
     finally:
-        first.send_signal(signal.SIGINT)
-        told, _ = first.communicate(timeout=60)
-    assert "Shutdown request" not in told
+        for program in reversed(started):
+            program.send_signal(signal.SIGINT)
+            program.wait(60)
+    assert "Shutdown request" not in first.read_text() + second.read_text()
 
 
 def nodes(environment):
