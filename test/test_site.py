@@ -1,6 +1,7 @@
 """`make site`: every link leads somewhere, no other host is asked, and both languages are whole."""
 
 import ast
+import fcntl
 import html
 import json
 import re
@@ -45,7 +46,7 @@ def site(tmp_path_factory) -> Path:
     done = built(folder)
     assert (done.returncode, done.stderr) == (0, ""), done.stderr
     assert "pages in" in done.stdout
-    assert sorted(path.name for path in folder.iterdir()) == ["run.html", "site"]
+    assert sorted(path.name for path in folder.iterdir()) == [".site.lock", "run.html", "site"]
     return folder / "site"
 
 
@@ -206,6 +207,7 @@ def test_each_page_is_in_the_menu_once_and_a_new_place_is_named():
     ('<a href="gone.html">', "gone.html: there is no such file"),
     ('<a href="#gone">', "#gone: the page has no such anchor"),
     ('<a href="../../b.html">', "no such file"),
+    ('<a href=".">', ".: leads to a folder"),
     ('<a href="/b.html">', "begins at the server's root"),
     ('<img src="https://example.org/a.png">', "is loaded from another host"),
     ('<script src="//example.org/a.js">', "is loaded from another host"),
@@ -216,13 +218,50 @@ def test_a_dead_or_foreign_link_is_a_line_with_its_page(tmp_path, body, problem)
     assert found.startswith("a.html: ") and problem in found
 
 
+def old_site(folder: Path) -> Path:
+    """A site's folder; returns its first page, which has the text "old"."""
+    for name in ("en", "zh", "demo"):
+        (folder / name).mkdir(parents=True)
+    (folder / "index.html").write_text("old")
+    return folder / "index.html"
+
+
 def test_a_replay_that_is_not_there_is_one_line_and_the_old_site_stays(tmp_path):
-    old = tmp_path / "site/index.html"
-    old.parent.mkdir()
-    old.write_text("old")
+    old = old_site(tmp_path / "site")
     (tmp_path / "site.x.unfinished").mkdir()  # of a build that was killed
     done = built(tmp_path, "--replay", str(tmp_path / "none.html"))
     assert (done.returncode, done.stderr) == (
         1, f"site: {tmp_path}/none.html: No such file or directory\n")
     assert old.read_text() == "old"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["run.html", "site"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".site.lock", "run.html", "site"]
+
+
+def test_a_folder_that_is_no_site_is_refused_and_stays_as_it_was(tmp_path):
+    for name in ("letter.txt", "index.html", "en/a.md"):
+        own = tmp_path / "site" / name
+        own.parent.mkdir(parents=True, exist_ok=True)
+        own.write_text("mine")
+        done = built(tmp_path)
+        assert (done.returncode, done.stderr) == (
+            1, f"site: {tmp_path}/site is there and is no site that was built before: name another"
+               " folder with --out\n")
+        assert own.read_text() == "mine"
+
+
+def test_a_second_build_ends_with_one_line_and_leaves_the_first_one_alone(tmp_path):
+    old = old_site(tmp_path / "site")
+    running = tmp_path / "site.x.unfinished/site"
+    running.mkdir(parents=True)
+    with (tmp_path / ".site.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        done = built(tmp_path)
+    assert (done.returncode, done.stderr) == (
+        1, f"site: {tmp_path}/site is being built by another make site: wait until it ends, then"
+           " type this again\n")
+    assert running.is_dir() and old.read_text() == "old"
+
+
+def test_what_is_left_beside_another_name_stays(tmp_path):
+    (tmp_path / "site1.x.unfinished").mkdir()
+    built(tmp_path, "--out", str(tmp_path / "site[1]"), "--replay", str(tmp_path / "none.html"))
+    assert (tmp_path / "site1.x.unfinished").is_dir()

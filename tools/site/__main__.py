@@ -2,12 +2,15 @@
 
     python3 tools/site [--out DIR]      DIR: out/site
 
-It is built beside DIR and takes its place when it is whole; exit code 1 with one line otherwise.
+It is built beside DIR and takes the place of the site there when it is whole; exit code 1 with one
+line otherwise. One is built at a time: its lock is .NAME.lock beside DIR.
 """
 
 from __future__ import annotations
 
 import argparse
+import fcntl
+import glob
 import logging
 import shutil
 import sys
@@ -29,6 +32,7 @@ from staging import HERE, ROOT, Pages, repository_pages, stage
 
 from bullet_sim.errors import SimulationError
 
+PARTS = {"index.html", "en", "zh", "demo"}  # what a site has
 NAMES = {"en": "ROS 1 driving courses", "zh": "ROS 1 小车课程"}
 REPLAY = ROOT / "out/course/run.html"
 START = """<!doctype html><meta charset="utf-8"><title>ROS 1 driving courses</title>
@@ -105,6 +109,38 @@ def build_site(out: Path, replay: Path) -> None:
         raise SiteError("\n".join(wrong))
 
 
+def check_place(out: Path) -> None:
+    """SiteError if something other than a site or an empty folder is there."""
+    if not out.exists():
+        return
+    there = {path.name for path in out.iterdir()} if out.is_dir() else {out.name}
+    if there and there != PARTS:
+        raise SiteError(f"{out} is there and is no site that was built before: name another folder"
+                        " with --out")
+
+
+def replace_site(out: Path, replay: Path) -> None:
+    """Build beside `out`, then take its place; SiteError or OSError, and the old one stays."""
+    out.parent.mkdir(parents=True, exist_ok=True)
+    with (out.parent / f".{out.name}.lock").open("a") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise SiteError(f"{out} is being built by another make site: wait until it ends, then"
+                            " type this again") from None
+        check_place(out)
+        for left in out.parent.glob(f"{glob.escape(out.name)}.*.unfinished"):  # it was killed
+            shutil.rmtree(left)
+        with tempfile.TemporaryDirectory(".unfinished", f"{out.name}.", out.parent) as folder:
+            made = Path(folder) / "site"
+            made.mkdir()
+            build_site(made, replay)
+            check_place(out)  # the build takes a while
+            if out.exists():
+                out.rename(Path(folder) / "old")
+            made.rename(out)
+
+
 def main() -> int:
     """The exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -115,15 +151,7 @@ def main() -> int:
     logging.basicConfig(format="site: %(message)s", level=logging.WARNING)
     begun, out = time.monotonic(), given.out.resolve()
     try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        for left in out.parent.glob(f"{out.name}.*.unfinished"):  # of one that was killed
-            shutil.rmtree(left)
-        with tempfile.TemporaryDirectory(".unfinished", f"{out.name}.", out.parent) as folder:
-            made = Path(folder) / "site"
-            made.mkdir()
-            build_site(made, given.replay)
-            shutil.rmtree(out, ignore_errors=True)
-            made.rename(out)
+        replace_site(out, given.replay)
     except KeyboardInterrupt:
         return 130
     except OSError as error:

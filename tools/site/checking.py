@@ -53,7 +53,7 @@ def _problem(site: Path, page: Path, loaded: bool, link: str, read) -> str:
         return "begins at the server's root, which another place of the site breaks"
     target = Path(posixpath.normpath(page.parent / path)) if path else page
     if target.is_dir():
-        target /= "index.html"
+        return "leads to a folder, not to a page"
     if not target.is_relative_to(site) or not target.is_file():
         return "there is no such file"
     if parts.fragment and target.suffix == ".html" and \
