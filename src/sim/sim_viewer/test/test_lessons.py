@@ -46,6 +46,36 @@ def test_its_files_are_served_with_a_policy_that_asks_no_other_host(site, visit)
     visit(story)
 
 
+def test_the_site_is_looked_for_only_where_make_can_build_it(tmp_path, monkeypatch):
+    folder = tmp_path / "one/share/sim_viewer"
+    monkeypatch.setattr(lessons.rospkg.RosPack, "get_path", lambda self, name: str(folder))
+    look = lessons.site_folder.__wrapped__
+    assert look() is None
+    (tmp_path / "Makefile").touch()
+    assert look() == tmp_path / "out/site"
+
+
+def test_an_installation_without_the_repository_does_not_ask_to_type_make_there(
+        monkeypatch, visit):
+    monkeypatch.setattr(lessons, "site_folder", lambda: None)
+
+    async def story(http, port):
+        async with http.get("/lessons/en/index.html") as answer:
+            assert answer.status == 404
+            assert "in a clone of the courses" in await answer.text()
+    visit(story)
+
+
+def test_the_address_without_its_slash_leads_to_the_site(site, visit):
+    build(site)
+
+    async def story(http, port):
+        async with http.get("/lessons?token=secret") as answer:
+            assert (answer.status, await answer.text()) == (200, "start")
+            assert answer.url.path == "/lessons/"
+    visit(story, token="secret")
+
+
 @pytest.mark.parametrize("path", [
     "/lessons/../secret.html", "/lessons/%2e%2e/secret.html", "/lessons/..%2fsecret.html",
     "/lessons/en/out.html", "/lessons//etc/passwd", "/lessons/%2fetc%2fpasswd", "/lessons/en",

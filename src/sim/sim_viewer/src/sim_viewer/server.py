@@ -15,7 +15,7 @@ from bullet_sim import __version__
 from bullet_sim.errors import FormatError
 from sim_viewer.access import Access
 from sim_viewer.hub import Hub
-from sim_viewer.lessons import ADDRESS, serve_lesson
+from sim_viewer.lessons import ADDRESS, FOLDER, serve_lesson, to_first_page
 from sim_viewer.options import Options
 from sim_viewer.page_scene import Meshes
 from sim_viewer.registry import Context, Node, operation
@@ -53,6 +53,7 @@ class Server:
         app.router.add_get("/{kind:mesh|texture}/{number:[0-9]{1,9}}", self.serve_shape)
         app.router.add_get("/", self._index)
         app.router.add_get(ABOUT, self._about)
+        app.router.add_get(FOLDER, to_first_page)
         app.router.add_get(ADDRESS, serve_lesson)
         app.router.add_static("/", self._folder)
         self._runner = web.AppRunner(app, access_log=None, logger=_logger(), shutdown_timeout=1.0)
