@@ -3,6 +3,7 @@
 import os
 import re
 import subprocess
+import threading
 import time
 from pathlib import Path
 
@@ -68,6 +69,19 @@ def test_who_waits_for_its_turn_says_at_once_for_whom(tmp_path, capfd):
     waits.communicate(timeout=60)
     assert waits.returncode == 0
     assert path.read_text() == f"{waits.pid}\n"
+
+
+def test_who_has_waited_is_named_to_the_next(tmp_path, capfd):
+    path = tmp_path / "run.lock"
+    held = take_turn(path)
+    threading.Timer(0.3, held.close).start()
+    second = take_turn(path)
+    assert path.read_text() == f"{os.getpid()}\n"
+    with pytest.raises(RunError):
+        take_turn(path, 0.1)
+    second.close()
+    for said in capfd.readouterr().err.splitlines():
+        assert said.partition(") ")[0].endswith(f"(process {os.getpid()}")
 
 
 def test_a_lock_that_leads_elsewhere_is_refused(tmp_path):

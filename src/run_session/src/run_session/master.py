@@ -106,7 +106,8 @@ def take_turn(path: Path, limit: float = TURN_LIMIT) -> IO:
     while True:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            file.truncate(0)
+            file.seek(0)  # _waiting has read on
+            file.truncate()
             file.write(b"%d\n" % os.getpid())
             file.flush()
             return file
