@@ -3,13 +3,15 @@
 import json
 import math
 
+import cv2
 import numpy as np
 import pytest
-from ai_robot_tracking.scenes.scene import KINDS
+from ai_robot_tracking.scenes.scene import KINDS, MOVING, draw_scene
 from ai_robot_tracking.scenes.world_file import RADIUS
 
 from evaluation.lap import Sample
-from evaluation.track import TrackRun
+from evaluation.picture import LEGEND_PX, bgr
+from evaluation.track import CURVE_PX, SHADE, TrackRun, write_picture
 from evaluation.track_score import CAMERA_X, PARTS, Task, TrackScorer
 from evaluation.track_trials import SETS, DriveResult, TrackTrial, summarize
 from evaluation.trial import run_trial
@@ -99,6 +101,16 @@ def test_found_too_late_or_only_for_a_moment():
     scorer = drive(Task(WALKS, (10.0,), WANTED),
                    lambda time: WANTED if time < 11 or 15 < time < 16 else 2.5)
     assert scorer.outcome == "not found again"
+
+
+@pytest.mark.parametrize("hidden", [(), (0.0, 40.0)])
+def test_a_drive_that_ends_at_once_is_drawn_with_the_hidden_times_in_its_legend(tmp_path, hidden):
+    scorer = drive(Task(WALKS, hidden, WANTED), lambda time: 2.5, seconds=0.1)
+    write_picture(tmp_path / "path.png", draw_scene(MOVING, 0), scorer, ["title"])
+    picture = cv2.imread(str(tmp_path / "path.png"))
+    below = LEGEND_PX + 30  # with the edges of both
+    for rows in (picture[-LEGEND_PX - 10:], picture[-CURVE_PX - below:-below]):
+        assert ((rows == bgr(SHADE)).all(axis=2).sum() > 100) == bool(hidden)
 
 
 def test_near_but_turned_away_is_not_found():

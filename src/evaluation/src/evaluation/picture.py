@@ -89,6 +89,11 @@ class Plan:
         cv2.circle(self.image, centre, round(radius * self.px_per_m * (1 << SHIFT)), bgr(colour),
                    thick_px, cv2.LINE_AA, SHIFT)
 
+    def box(self, low: Sequence[float], high: Sequence[float], colour: str) -> None:
+        """Fill the rectangle between two corners (x, y), m."""
+        one, other = np.round(self.to_px([low, high])).astype(int).tolist()
+        cv2.rectangle(self.image, one, other, bgr(colour), -1)
+
     def cross(self, place: Sequence[float], colour: str) -> None:
         """Draw a cross, 14 px wide."""
         cv2.drawMarker(self.image, tuple(np.round(self.to_px([place]))[0].astype(int).tolist()),

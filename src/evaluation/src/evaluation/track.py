@@ -167,9 +167,10 @@ def write_picture(path: Path, scene: Scene, drive: TrackScorer, lines: Sequence[
     draw_drive(plan, drive)
     what, curve = ("cylinder", "m to the cylinder") if drive.task.wanted is None else (
         "wanted distance", "m beside the wanted distance")
+    hidden = [("hidden", SHADE)] if drive.task.hidden else []
     write_png(path, sheet(lines[:3], [plan, _curve(drive)], [
         ("the cylinder", CAR), (f"within {BAND:g} m of the {what}", GOOD), ("not", BAD),
-        (curve, FAINT)]))
+        (curve, FAINT), *hidden]))
 
 
 def _curve(drive: TrackScorer) -> Plan:
@@ -179,8 +180,7 @@ def _curve(drive: TrackScorer) -> Plan:
     low, high = (-MOST_SHOWN, MOST_SHOWN) if wanted else (0.0, max(*drive.errors, 0.1))
     plan = Plan((0.0, low), (max(times[-1], 0.1), high), MAP_PX, CURVE_PX)
     for begin in drive.task.hidden:
-        middle = begin - began + HIDDEN_TIME / 2
-        plan.line([(middle, low), (middle, high)], SHADE, round(HIDDEN_TIME * plan.px_per_m))
+        plan.box((begin - began, low), (begin - began + HIDDEN_TIME, high), SHADE)
     plan.grid(10.0, 0.5 if wanted else 1.0)
     for mark in (-BAND, 0.0, BAND) if wanted else (0.0,):
         plan.line([(0.0, mark), (times[-1], mark)], FAINT)
