@@ -19,7 +19,7 @@ def show_background():
                  "end it if it runs, and type rosrun turtlesim turtlesim_node  "
                  "请启动（或重启）turtlesim")
     for name, value in zip(NAMES, values, strict=True):
-        if not isinstance(value, int):  # somebody has set it  有人改成了别的类型
+        if type(value) is not int:  # somebody has set it  有人改成了别的类型
             sys.exit(f"parameter_config.py: parameter {name} must be a whole number, not "
                      f"{value!r}; type: rosparam set {name} 255  应为整数")
     rospy.loginfo("background: r %d, g %d, b %d", *values)
