@@ -13,9 +13,9 @@ POLICY = "default-src 'self' 'unsafe-inline' data: blob:; frame-ancestors 'self'
 NOT_BUILT = ("The lessons' pages are not built yet. In the courses' folder type: make site\n"
              "课程网站还没有生成。请在课程的文件夹里输入：make site\n")
 
-NOT_HERE = ("The lessons' pages are not part of this installation: they are built in a clone of the "
-            "courses, there by: make site\n"
-            "这个安装里没有课程网站：它在课程的克隆里用 make site 生成。\n")
+NOT_HERE = ("The lessons' pages are not part of this installation: they are built in a clone of "
+            "the courses, there by: make site\n"
+            "此安装不含课程网站。请在课程仓库的克隆里输入 make site 来生成。\n")
 
 
 @cache
