@@ -3,6 +3,7 @@
 import os
 import re
 import runpy
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -150,3 +151,20 @@ def test_without_a_commit_one_line_says_so():
                           env={"PATH": os.environ["PATH"], "GIT_DIR": "/nonexistent"})
     assert (done.returncode, done.stderr) == (1, (
         "wheels: git does not know this folder's commit: wheels are built in a clone\n"))
+
+
+@pytest.mark.parametrize("name, value, said", [
+    ("SOURCE_DATE_EPOCH", "abc", "SOURCE_DATE_EPOCH is abc: write whole seconds since 1970"),
+    ("SOURCE_DATE_EPOCH", "-1", "SOURCE_DATE_EPOCH is -1: write whole seconds since 1970"),
+    ("SOURCE_DATE_EPOCH", "4294967296", "SOURCE_DATE_EPOCH is 4294967296: write whole"),
+    ("GIT_DIR", "/nowhere", "git does not know this folder's commit"),
+])
+def test_a_time_that_is_none_is_one_line_before_anything_is_installed(
+        tmp_path, name, value, said):
+    scripts = tmp_path / "scripts"
+    shutil.copytree(ROOT / "scripts", scripts)
+    (scripts / "setup.sh").write_text("echo installs\n")
+    done = subprocess.run([scripts / "wheels.sh"], text=True, capture_output=True, check=False,
+                          env=os.environ | {"LC_ALL": "C", "SOURCE_DATE_EPOCH": "", name: value})
+    assert (done.returncode != 0, done.stdout) == (True, "")
+    assert said in done.stderr and done.stderr.count("\n") == 1
