@@ -97,7 +97,7 @@ make_debian() {
 add_rules() {
   { cat "$1" 2> /dev/null || true; printf '%s\n' "${@:2}"; } | awk '!seen[$0]++' > "$1.new"
   chmod 440 "$1.new"
-  visudo -qcf "$1.new" || { rm -f "$1.new"; fail $"visudo does not take $1"; }
+  visudo -qcf "$1.new" > /dev/null || { rm -f "$1.new"; fail $"visudo does not take $1"; }
   mv "$1.new" "$1"
 }
 remove() {
@@ -128,8 +128,8 @@ if ! is_ready "${needed[@]}"; then
   sudo -kn true 2> /dev/null && passwordless=yes
   if [ ! -e "$place/complete" ]; then
     say $"This is $this, which has no ROS 1: a Debian 12 goes into $place, once (some minutes, 3 GB with all that setup installs; make clean-root removes it)."
-    [ "$passwordless" = yes ] || say $"sudo asks for your password."
   fi
+  [ "$passwordless" = yes ] || say $"sudo asks for your password."
   [ ! -f "$place/folders" ] || mapfile -t needed < <(sort -u "$place/folders" - <<< "$(printf '%s\n' "${needed[@]}")")
   sudo "MIRROR=${MIRROR:-}" "http_proxy=${http_proxy:-}" "https_proxy=${https_proxy:-}" "LANGUAGE=${LANGUAGE:-}" \
     "$root/scripts/debian_root.sh" --make "$passwordless" "$(id -un)" "${needed[@]}" || exit 2
