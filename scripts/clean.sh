@@ -3,6 +3,7 @@
 on_any_linux=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 cd "$root"
+say $"Removing .venv, build, devel and what else was installed and built here; make setup brings it back, by the network."
 rm -rf .venv .setup build devel install out/test .pytest_cache .ruff_cache .catkin_workspace __pycache__
 rm -rf src/sim/bullet_sim/src/bullet_sim/data/models src/compat/turtlebot3_gazebo/worlds src/{compat,navigation}/names
 for model in src/compat/turtlebot3_gazebo/models/*; do [ "${model##*/}" = turtlebot3_world ] || rm -rf "$model"; done

@@ -49,8 +49,8 @@ errors() {
   mapfile -td '' logs < <(find -H "${@:2}" -name '*.log' -size +0 -printf '%T@ %p\0' 2>/dev/null | sort -zn | cut -zd ' ' -f 2-)
   [ ${#logs[@]} -gt 0 ] || return 0
   found=$(ROOT=$root OURS=$ours PYTHON=$python MODULES=$modules LIBRARIES=$libraries LEARNERS=$learners \
-    TRACKED=$(git -C "$root" ls-files src 2>/dev/null) perl -ne '
-    BEGIN { %tracked = map { $_ => 1 } split /\n/, $ENV{TRACKED} }
+    perl -ne '
+    BEGIN { open my $files, "<&=3"; %tracked = map { chomp; $_ => 1 } <$files> }
     while (m{(?:\Q$ENV{ROOT}\E/(?=(?:src/(?:$ENV{OURS})|scripts|test|\.venv)/)|(?<![\w./-])(?=/usr/lib/python3[\d.]*/))
              ((?:(?!\.\./)[\w./+-])+)(?:",\ line\ |:)(\d+)
             |^(?:(?:$ENV{MODULES})\.(?:\w+\.)*(\w+(?:Error|Exception))|($ENV{PYTHON}))(?::|$)
@@ -63,7 +63,7 @@ errors() {
         (%tracked or $place =~ m{^src/(?:(?:$ENV{LEARNERS})/|.*/scripts/)});
       $place =~ s{/site-packages/\K(?!(?:$ENV{LIBRARIES})/).*}{} if $place;
       print "  ", $known // "$place:$line", "\n";
-    }' "${logs[@]}" | uniq | tail -n "$lines")
+    }' "${logs[@]}" 3< <(git -C "$root" ls-files src 2>/dev/null) | uniq | tail -n "$lines")
   say "log: $heading, $(date -r "${logs[-1]}" '+%F %R'):${found:+$'\n'}${found:- no known error}"
 }
 report() (

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Lesson 6: steer with PID instead of P.  第六课：用 PID 代替 P。"""
 
+import sys
 import time
 
 import cv2
@@ -43,13 +44,21 @@ def find_line(image):
     return int(column), rows.start + int(row)
 
 
+def number(name, default):
+    """This node's parameter; ends if it is no number.  读取参数，不是数字就退出。"""
+    value = rospy.get_param("~" + name, default)
+    if type(value) not in (int, float):
+        sys.exit(f"06follower_pid.py: ~{name} must be a number, not {value!r}")
+    return value
+
+
 class Follower:
     def __init__(self):
         self.bridge = cv_bridge.CvBridge()
-        self.speed = rospy.get_param("~speed", SPEED)
-        self.kp = rospy.get_param("~kp", KP)
-        self.ki = rospy.get_param("~ki", KI)
-        self.kd = rospy.get_param("~kd", KD)
+        self.speed = number("speed", SPEED)
+        self.kp = number("kp", KP)
+        self.ki = number("ki", KI)
+        self.kd = number("kd", KD)
         self.reset()
         cv2.namedWindow("showImage", cv2.WINDOW_NORMAL)
         self.cmd_vel_pub = rospy.Publisher("cmd_vel", Twist, queue_size=1)

@@ -2,6 +2,7 @@
 """Lesson 7: steer by metres on the ground, not by pixels.  第七课：按地面上的米来转向。"""
 
 import math
+import sys
 import time
 
 import cv2
@@ -67,10 +68,18 @@ def steer(points, speed):
     return max(-MAX_TURN, min(MAX_TURN, speed * (near + GAIN * (near - far))))
 
 
+def number(name, default):
+    """This node's parameter; ends if it is no number.  读取参数，不是数字就退出。"""
+    value = rospy.get_param("~" + name, default)
+    if type(value) not in (int, float):
+        sys.exit(f"07follower_ground.py: ~{name} must be a number, not {value!r}")
+    return value
+
+
 class Follower:
     def __init__(self):
         self.bridge = cv_bridge.CvBridge()
-        self.speed = rospy.get_param("~speed", SPEED)
+        self.speed = number("speed", SPEED)
         self.camera = CAMERA | rospy.get_param("~camera", {})
         self.side = 1.0  # +1: the line was last seen on the left, -1: on the right
         self.arrival = rospy.get_time()  # of the last image  上一帧图像的时刻

@@ -81,7 +81,8 @@ def interrupted():
         left.append(node.kill)
         assert master.kept.wait(LIMIT)
         node.send_signal(number)
-        return node.communicate(timeout=LIMIT / 2)[0].splitlines(), master
+        lines = node.communicate(timeout=LIMIT / 2)[0].splitlines()
+        return lines, master, node.returncode
 
     yield run
     while left:
@@ -96,10 +97,27 @@ def interrupted():
     ("rospy.Publisher('/a', String, queue_size=1)", "registerPublisher", "/a"),
     ("threading.Thread(target=rospy.get_param, args=('/a', 0)).start()", "getParam", "/a")])
 def test_a_node_ends_in_the_middle_of_a_call(interrupted, statement, method, name, number):
-    lines, master = interrupted(statement, method, name, number)
+    lines, master, _ = interrupted(statement, method, name, number)
     assert [line for line in lines if "a line" not in line] == ["first", "second", "ended"]
     assert master.gone.is_set()
     assert not master.publishers
+
+
+@pytest.mark.processes
+def test_a_closed_terminal_runs_the_hooks_and_ends_the_node(interrupted):
+    lines, master, code = interrupted("rospy.get_param('/a', 0)", "getParam", "/a", signal.SIGHUP)
+    assert lines == ["first", "second"] and code == -signal.SIGHUP
+    assert master.gone.is_set()
+
+
+@pytest.mark.parametrize("before", [signal.SIG_IGN, lambda *_: None])
+def test_a_hangup_that_nohup_or_the_node_handles_stays_theirs(before):
+    kept = signal.signal(signal.SIGHUP, before)
+    try:
+        node_end.registering_hangup(lambda: None, None)()
+        assert signal.getsignal(signal.SIGHUP) is before
+    finally:
+        signal.signal(signal.SIGHUP, kept)
 
 
 def test_what_a_held_answer_leaves_is_not_the_next_calls():

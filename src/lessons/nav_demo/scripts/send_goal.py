@@ -27,7 +27,8 @@ def place_of(words):
         if not all(map(math.isfinite, (x, y, degrees))):
             raise ValueError
     except ValueError:
-        sys.exit("which place? e.g. rosrun nav_demo send_goal.py 1.5 -1.5 90")
+        place = " ".join(words)
+        sys.exit(f"which place is {place!r}? e.g. rosrun nav_demo send_goal.py 1.5 -1.5 90")
     return x, y, degrees
 
 
@@ -108,7 +109,7 @@ def stop_if_driving(client):
 
 def main():
     x, y, degrees = place_of(rospy.myargv(sys.argv)[1:])  # without ROS's  去掉 ROS 自己的参数
-    rospy.init_node("send_goal")
+    rospy.init_node("send_goal", anonymous=True)  # a later goal replaces it  后发的目标取代它
     wait_for_clock()
     if rospy.is_shutdown():  # Ctrl-C: the master may have ended  此时可能已没有 master
         sys.exit("stopped before the goal was sent")

@@ -1,10 +1,11 @@
-"""A node ends at Ctrl-C and SIGTERM, wherever they interrupt it; and by force at a later Ctrl-C.
+"""A node ends at Ctrl-C, SIGTERM and SIGHUP, wherever they interrupt it; a later Ctrl-C forces it.
 
 rospy ends a node in the signal's handler, in the thread that the signal interrupts: what it waits
 for there must not be held by the same thread.
 """
 
 import functools
+import os
 import signal
 import threading
 import time
@@ -20,6 +21,7 @@ UNDONE_BY = {"registerPublisher": ("unregisterPublisher", 3),  # and which word 
 def amend_core(core):
     """Amend calls of the master and the signals' handler; `core` is the module rospy.core."""
     core._LockedServerProxy = proxy_without_waiting(core._LockedServerProxy, core.is_shutdown)
+    core.register_signals = registering_hangup(core.register_signals, core._ros_signal)
     core._ros_signal = handler_with_force(core._ros_signal)
     core._TIMEOUT_SHUTDOWN_JOIN = JOIN_TIME
 
@@ -70,6 +72,25 @@ def handler_with_force(handler):
             raise KeyboardInterrupt
 
     return at_signal
+
+
+def registering_hangup(register, handler):
+    """This function of no arguments, but a closed terminal (SIGHUP) also runs a node's hooks.
+
+    rospy knows SIGHUP not: the node would be gone at once, its robot drive on by the last command,
+    and its name stay with the master. The process ends by the signal, as without a handler.
+    """
+    def at_hangup(number, frame):
+        handler(number, frame)
+        signal.signal(number, signal.SIG_DFL)
+        os.kill(os.getpid(), number)
+
+    def register_signals():
+        register()
+        if signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:  # else nohup, or the node's own
+            signal.signal(signal.SIGHUP, at_hangup)
+
+    return register_signals
 
 
 def amend_registration(registration):
