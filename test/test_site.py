@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent
 TOOL = ROOT / "tools/site"
 sys.path.append(str(TOOL))
 
-from advice import _line, advice  # noqa: E402
+from advice import _line, advice, cut, helps  # noqa: E402
 from checking import faults  # noqa: E402
 from recording import bench, watched_controller  # noqa: E402
 from ros2 import follower, twins  # noqa: E402
@@ -147,6 +147,40 @@ def test_the_page_of_errors_has_each_line_of_ours_that_says_what_to_type(site):
         assert said in english
     common = yaml.safe_load((TOOL / "errors.yaml").read_text("utf-8"))
     assert len(common) >= 20 and all(each["en"] and each["zh"] for each in common)
+
+
+@pytest.mark.parametrize("line, says, do", [
+    ("{0} is full; make room there, then type this again", "{0} is full",
+     "make room there, then type this again"),
+    ("{0} has no name: give it one", "{0} has no name", "give it one"),
+    ("Nobody listens to {0} yet. If {1} is meant, end this program and start it with {2}:={3}.",
+     "Nobody listens to {0} yet", "If {1} is meant, end this program and start it with {2}:={3}."),
+    ("{0} hides it. In a terminal for the courses' type: source {1}", "{0} hides it",
+     "In a terminal for the courses' type: source {1}"),
+])
+def test_a_line_is_cut_where_its_sentence_ends(line, says, do):
+    assert cut(line) == (says, do)
+
+
+@pytest.mark.parametrize("line", [
+    'sys.exit("it waits; give each message its time instead")',
+    "1: pause, 0: go on", "{0}; export the file again", "{0}: {1}: give another --out",
+    "; type export {0}=VALUE", "(on the machine where it runs; then start it again)",
+    "Load and start controllers, stop and unload them when this ends.",
+    "{0} has to be an entry with name, type and params",
+    "{0} has to be an entry with name: type and params", "{0} must be exercises, NAME: {{1}}",
+    "model {0}: sensor {1}: type {2} is not simulated", "To see it, type: source devel/setup.bash"])
+def test_a_line_that_is_no_advice_is_left_out(line):
+    assert cut(line) is None
+
+
+def test_what_only_help_shows_is_no_advice():
+    found = {(says, do) for rows in advice().values() for says, do, _ in rows}
+    assert not any(says in ("", "list") or do == "go on" for says, do in found)
+    program = ROOT / "src/compat/gazebo_ros/src/gazebo_ros/gz.py"
+    assert "1: pause, 0: go on" in helps(program) and helps(ROOT / "scripts/help.sh") == set()
+    shown = {f"{says}{between}{do}" for says, do in found for between in ("; ", ". ", ": ")}
+    assert not shown & set().union(*(helps(ROOT / place) for place in advice()))
 
 
 def test_each_lesson_for_ros_2_is_python_that_only_speaks_rclpy(site):

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import sys
 from collections import defaultdict
+from pathlib import Path
 
 import yaml
 from staging import HERE, ROOT, Pages
 
 sys.path.append(str(ROOT / "scripts"))
-from terminal_texts import LOCALES, unquoted
+from terminal_texts import LOCALES, sentence, unquoted
 
-ADVICE = re.compile(
-    r"(?:; |\. |: |, )((?:(?:then |else |in each new terminal |in the repository )?"
+CUT = re.compile(
+    r"(?:; |\. |(?<!\btype)(?<!\bas): )(?="
+    r"(?:(?:if|for|once|without)\b[^.;:,]*, |in (?:an?|each|another|the)\b[^.;:,]* |then |else )?"
     r"(?:add|allow|answer|ask|build|call|choose|close|connect|correct|delete|end|export|give|"
     r"go|install|leave|let|load|look|make|mend|move|name|open|press|put|remove|rename|run|"
-    r"see|send|set|source|spawn|start|stop|take|try|type|unset|use|wait|write)\b).*)$",
-    re.IGNORECASE | re.DOTALL)
+    r"see|send|set|source|spawn|start|stop|take|try|type(?! and| \S+ is)|unset|use|wait|write)\b"
+    r"(?:(?<=type):|(?<=see):|,)?\s\S)", re.IGNORECASE)
+SIGNS = re.compile(r"(?<!\S)\W+(?!\S)")  # a word of no letters, such as a bracket that is meant
+VALUE = re.compile(r"\{\d+\}|\$\{?\w+\}?|%[sd]")
+WORD = re.compile(r"[A-Za-z]+")
 SAYS = {"en": ("# It says X, type Y",
                "What programs print, and what to do then. `…` stands for a name or a number. "
                "The search finds a line by its words.",
@@ -31,6 +37,34 @@ ENTRY = re.compile(r'^((?:#: .*\n)+)(?:msgctxt .*\n)?msgid ((?:".*"\n)+)msgstr (
                    re.MULTILINE)
 
 
+def cut(english: str) -> tuple[str, str] | None:
+    """What a line says, and what to do then; None if it is no advice.
+
+    It is cut where a sentence or its half ends, outside of quotes and brackets.
+    """
+    for match in CUT.finditer(english):
+        says, do = english[:match.start()], english[match.end():]
+        words = SIGNS.sub("", says)
+        whole = words.count('"') % 2 == 0 and all(
+            words.count(opening) == words.count(closing) for opening, closing in ("()", "[]", "{}"))
+        if whole:
+            said = len(WORD.findall(VALUE.sub("", says))) > 1
+            return (says, do) if said and len(do.split()) > 1 else None
+    return None
+
+
+def helps(path: Path) -> set[str]:
+    """The lines of a Python program that only --help shows; none of another file."""
+    text = path.read_text("utf-8")
+    if path.suffix != ".py" and not text.startswith("#!/usr/bin/env python3"):
+        return set()
+    return {line.strip() for node in ast.walk(ast.parse(text))
+            if isinstance(node, ast.keyword) and node.arg in ("help", "description", "epilog")
+            for string in ast.walk(node.value) if isinstance(string, ast.JoinedStr | ast.Constant)
+            if not isinstance(string, ast.Constant) or isinstance(string.value, str)
+            for line in sentence(string).split("\n")}
+
+
 def advice() -> dict[str, list[tuple[str, str, str]]]:
     """By the file that prints it: what an English line says, its advice, and the Chinese line."""
     found = defaultdict(list)
@@ -39,8 +73,8 @@ def advice() -> dict[str, list[tuple[str, str, str]]]:
             english, chinese = ("".join(map(unquoted, re.findall(r'^"(.*)"$', text, re.MULTILINE)))
                                 for text in texts)
             place = places.split()[1]
-            if "/" in place and (match := ADVICE.search(english)):
-                found[place].append((english[:match.start()], match[1], chinese))
+            if "/" in place and (parts := cut(english)) and english not in helps(ROOT / place):
+                found[place].append((*parts, chinese))
     return dict(sorted(found.items()))
 
 
@@ -62,6 +96,6 @@ def add_advice(pages: Pages) -> None:
 
 def _line(text: str) -> str:
     """As code in a table's cell, with … for a value."""
-    text = re.sub(r"\{\d+\}|\$\{?\w+\}?|%[sd]", "…", text)
+    text = VALUE.sub("…", text)
     text = " ".join(text.split())
     return f"`` {text} ``" if "`" in text else f"`{text}`" if text else ""
