@@ -26,7 +26,7 @@ def site_folder() -> Path | None:
 
 
 async def to_first_page(request: web.Request) -> web.Response:
-    """Without its slash the address would make the pages' links lead elsewhere."""
+    """HTTPFound of the address with its slash, below which the pages' links lead on."""
     raise web.HTTPFound(request.rel_url.with_path(FOLDER + "/").with_query(request.query))
 
 
