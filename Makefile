@@ -24,7 +24,7 @@ $(foreach name,$(given),$(eval override $(name) := $$(value $(name))))
 export $(given)
 $(if $(unknown),$(error $(shell scripts/help.sh --no-option "$(MAKECMDGOALS)" $(foreach word,$(unknown),$(call quoted,$(word)=)))))
 switches := $(foreach name,BASHRC CONTROL CPP FAST FILM PEOPLE QUICK RESUME,$(if $(findstring $$($(name)),$(rules)),$(name)))
-undecided := $(strip $(foreach name,$(switches),$(if $(filter-out 0 1 no yes false true,$(value $(name)))$(word 2,$(value $(name))),$(name)=)))
+undecided := $(strip $(foreach name,$(switches),$(if $(filter-out 0 1 no yes false true,$(value $(name)))$(word 2,$(value $(name))),$(call quoted,$(name)=$($(name))))))
 $(if $(undecided),$(error $(shell scripts/help.sh --no-switch $(undecided))))
 numbers := CROSSINGS DURATION GOALS HOURS JOBS KIDNAPS LAPS MEMORY_S MINUTES PACE REPEATS ROUNDS SAMPLE SEED SEEDS STARTS TRACKS WORKERS YARDS
 numbers := $(foreach name,$(numbers),$(if $(findstring $$($(name)),$(rules)),$(if $($(name)),$(call quoted,$(name)=$($(name))))))

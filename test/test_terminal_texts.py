@@ -107,8 +107,8 @@ def test_the_scripts_follow_the_locale(environment: dict[str, str], word: str) -
     ("go", "make go is a command of the lesson src/lessons/lane_keeping; type: make -C "
            "src/lessons/lane_keeping go", "请输入：make -C src/lessons/lane_keeping go"),
     ("course LAP=2", "make course has no option LAP=; is LAPS meant?", "是不是想输入 LAPS？"),
-    ("course FAST=maybe", "FAST=: write 1 or 0, or leave it out", "FAST=：请写 1 或 0，或者不写"),
-    ("lane FAST=' PEOPLE=`", "FAST= PEOPLE=: write 1 or 0, or leave it out", "请写 1 或 0"),
+    ("course FAST=maybe", "FAST=maybe: write 1 or 0, or leave it out", "FAST=maybe：请写 1 或 0"),
+    ("lane FAST=' PEOPLE=`", "FAST=' PEOPLE=`: write 1 or 0, or leave it out", "请写 1 或 0"),
     ("course SEED=\"x", 'SEED="x: write a whole number, or leave it out', "请写整数"),
     ("navigate PACE=x", "PACE=x: write a number, such as 2 or 0.5", "请写数字"),
     ("navigate PACE=-1", "PACE=-1: write a number above 0, or leave it out", "请写大于 0 的数"),
@@ -128,7 +128,7 @@ def test_make_names_the_nearest_command_and_option(words: str, english: str, chi
 
 
 @pytest.mark.parametrize(("word", "told"), [
-    ("PEOPLE=0 1", "PEOPLE=: write 1 or 0"), ("SEED=1 2", "SEED=1 2: write a whole number"),
+    ("PEOPLE=0 1", "PEOPLE=0 1: write 1 or 0"), ("SEED=1 2", "SEED=1 2: write a whole number"),
     ("METHOD=a\"b' $(id) $b$$c", "no method 'a\"b' $(id) $b$$c' (METHOD=)")])
 def test_a_value_reaches_a_script_as_it_was_typed(word: str, told: str) -> None:
     assert told in said(["make", "lane", word])
