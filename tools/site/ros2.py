@@ -33,6 +33,9 @@ RULES = [(re.compile(old), new) for old, new in (
     (r'CAMERA \| rospy\.get_param\("~camera", \{\}\)',
      r'{name: self.declare_parameter(f"camera.{name}", value).value'
      r"\n                       for name, value in CAMERA.items()}"),
+    # rclpy refuses a value of another type than the default's by itself.
+    (r"def number\(name, default\):\n(?:    .*\n)+\n\n|import sys\n", ""),
+    (r'\bnumber\("(\w+)", (\w+)\)', r'self.declare_parameter("\1", \2).value'),
     (r'rospy\.get_param\("~(\w+)", (\w+)\)', r'self.declare_parameter("\1", \2).value'),
     (r'rospy\.logwarn_throttle\(2, (".*?")\)',
      r"self.get_logger().warning(\1, throttle_duration_sec=2.0)"),
