@@ -10,7 +10,7 @@ lines=20  # of each verb's errors, the last
 ours=$(sed -n '/^OUR_FOLDERS/,/)/p' "$root/scripts/own_packages.py" | grep -o '"[a-z_]*"' | tr -d '"' | paste -sd '|')
 
 learners="learning_topic|exercises|lessons"  # where learners add files of their own
-python=$(python3 -c 'import builtins as b; print(*(n for n in dir(b) if n.endswith(("Error", "Exception"))), sep="|")' || echo Exception)
+python=$(python3 -c 'import builtins as b; print(*(n for n in dir(b) if n.endswith(("Error", "Exception"))), sep="|")' 2> /dev/null || echo Exception)
 modules='rospy|ros\w*|genpy|genmsg|actionlib|tf2?|tf2_ros|xacro|catkin\w*|cv_bridge|numpy|yaml|xml|json|subprocess|xmlrpc|http'
 modules+="|bullet_sim\w*|sim_viewer|evaluation|marking|run_session|workspace_needs|node_basics|nav_algorithms"
 libraries='cv2|numpy|numba|llvmlite|pybullet\w*|moderngl|onnxruntime|scipy|psutil|yaml'

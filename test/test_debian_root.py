@@ -232,6 +232,15 @@ def test_a_workspace_that_is_sourced_outside_says_where_to_type(tmp_path, langua
     assert (done.returncode, done.stdout, done.stderr) == (1, "", told.format(tmp_path))
 
 
+def test_a_bug_report_is_written_where_there_is_no_python(tmp_path):
+    machine = Machine(tmp_path, UBUNTU)
+    (tmp_path / "src").symlink_to(ROOT / "src")
+    machine.program("python3", "echo python3: command not found >&2; exit 127")
+    done = machine.run("report.sh")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "Ubuntu 24.04.1" in (tmp_path / "out/report.txt").read_text()
+
+
 def test_it_is_removed_by_one_command(tmp_path):
     machine = Machine(tmp_path, UBUNTU)
     machine.forget_what_root_does()
