@@ -97,6 +97,10 @@ class Page(browser.Page):
     def png(self) -> bytes:
         return base64.b64decode(self.call("browsingContext.captureScreenshot")["data"])
 
+    def resize(self, width: int, height: int) -> None:
+        """The page's size in px."""
+        self.call("browsingContext.setViewport", viewport={"width": width, "height": height})
+
     def close(self) -> None:
         self.call("browsingContext.close")
 

@@ -134,7 +134,7 @@ def test_from_disk_the_slider_moves_robot_and_film_and_nothing_is_asked_of_a_net
     motion = recorded(scene(ROBOT, texture=str(tmp_path / "bad.tga")), NAMES,
                       *(at(time, time / 5) for time in times))
     file = tmp_path / "run.html"
-    file.write_text(replay_page(motion, Shown("lap", film=film, curves=[
+    file.write_text(replay_page(motion, Shown("lap", film=film, text="words " * 20, curves=[
         Curve(("speed", "速度"), "m/s", motion.times, motion.speeds())])))
     browser = kind.Browser()
     try:
@@ -149,6 +149,9 @@ def test_from_disk_the_slider_moves_robot_and_film_and_nothing_is_asked_of_a_net
         wait_until(lambda: abs(red_column(page) - before) > 30, "the robot elsewhere")
         assert page.evaluate("document.querySelector('figcaption').textContent").startswith(
             "speed: 0.20 m/s")
+        page.resize(390, 844)  # a telephone
+        page.wait_for("innerWidth === 390")
+        page.wait_for("document.querySelector('main').scrollWidth <= 390")
         assert page.errors == []
         assert page.requests
         assert {url.partition(":")[0] for url in page.requests} <= {"file", "data", "blob"}
