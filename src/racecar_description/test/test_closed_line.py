@@ -4,6 +4,7 @@ import math
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 import rospkg
 from kinematic_follower import drive
@@ -84,6 +85,15 @@ def test_nearest_finds_back_what_pose_gave(left):
         near = track.nearest(x - left * math.sin(heading), y + left * math.cos(heading))
         assert near.lateral == pytest.approx(left, abs=1e-9)
         assert math.remainder(near.s - s, track.length) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_nearest_is_the_nearest_of_all_pieces_also_far_away(path):
+    track, random = load_track(path), np.random.default_rng(3)
+    spread = track.length / 2
+    for x, y in random.uniform(-spread, spread, (300, 2)).tolist():
+        away = [math.dist((x, y), piece.pose(piece.nearest(x, y))[:2]) for piece in track.pieces]
+        assert abs(track.nearest(x, y).lateral) == pytest.approx(min(away), abs=1e-12)
 
 
 def test_offset_to_the_right_of_a_left_circle_is_longer():

@@ -59,6 +59,7 @@ class CourseEnv(gymnasium.Env):
         self._simulation = Simulation(self.course, (width, height), timestep)
         self._most_steps = _whole("duration", round(duration * self._simulation.rate_hz))
         self.action_space = _actions(self.course, self._ackermann)
+        self._bounds = self.action_space.low.tolist(), self.action_space.high.tolist()
         self.observation_space = spaces.Box(0, 255, (height, width, 3), np.uint8)
         if self._features:
             self.observation_space = spaces.Box(
@@ -78,8 +79,8 @@ class CourseEnv(gymnasium.Env):
     def step(self, action: np.ndarray
              ) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """One picture on; actions beyond the space's bounds count as the bounds."""
-        low, high = self.action_space.low, self.action_space.high
-        speed, turn = np.clip(np.asarray(action, float), low, high).tolist()
+        speed, turn = (min(max(value, low), high) for value, low, high in
+                       zip(np.asarray(action, float).tolist(), *self._bounds, strict=True))
         self._simulation.drive(speed, turn, self._ackermann)
         reward, over = self._task.score(self._simulation.sample())
         self._steps += 1

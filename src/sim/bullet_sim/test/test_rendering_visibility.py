@@ -35,14 +35,14 @@ def seen(*links, camera=Pose()):
 ])
 def test_a_part_is_seen_if_its_box_reaches_into_the_view(x, y, visible):
     found = seen(([cube(x, y)], Pose()))
-    assert found.parts[0].tolist() == [visible]
+    assert found.parts[0] == [visible]
     assert found.order == ([0] if visible else [])
 
 
 def test_each_part_of_a_link_counts_by_itself():
     link = [cube(-1.0), cube(1.0, material=BLUE)]
     found = seen((link, Pose()))
-    assert found.parts[0].tolist() == [False, True] and found.order == [0]
+    assert found.parts[0] == [False, True] and found.order == [0]
 
 
 def test_a_part_around_the_camera_is_seen():

@@ -32,6 +32,9 @@ class Track:
         self._ends = tuple(begin + piece.length
                            for begin, piece in zip(self.begins, pieces, strict=True))
         self.length = self._ends[-1]
+        # A circle around each piece, about its middle: x, y and radius, m.
+        self._around = tuple((*piece.pose(piece.length / 2)[:2], piece.length / 2)
+                             for piece in pieces)
         self._check_closed()
 
     def _check_closed(self) -> None:
@@ -51,15 +54,25 @@ class Track:
     def nearest(self, x: float, y: float) -> NearestPoint:
         """The line's point closest to x, y."""
         best_distance, best = math.inf, NearestPoint(0.0, 0.0)
-        for begin, piece in zip(self.begins, self.pieces, strict=True):
+        for index in self._may_be_nearest(x, y):
+            piece = self.pieces[index]
             s = piece.nearest(x, y)
             px, py, heading = piece.pose(s)
             distance = math.hypot(x - px, y - py)
             if distance < best_distance:
                 cross = math.cos(heading) * (y - py) - math.sin(heading) * (x - px)
                 best_distance = distance
-                best = NearestPoint((begin + s) % self.length, math.copysign(distance, cross))
+                best = NearestPoint((self.begins[index] + s) % self.length,
+                                    math.copysign(distance, cross))
         return best
+
+    def _may_be_nearest(self, x: float, y: float) -> list[int]:
+        """Numbers of the pieces on which the point closest to x, y may be: those whose circle is
+        not farther away than the most that one of the others' can be."""
+        away = [math.hypot(x - cx, y - cy) for cx, cy, _ in self._around]
+        most = min(away) + CLOSED_WITHIN  # the middle of a piece is on the line
+        return [index for index, (gap, (_, _, radius)) in
+                enumerate(zip(away, self._around, strict=True)) if gap - radius <= most]
 
     def offset(self, left: float) -> Track:
         """The closed line this far to the left (negative: to the right)."""

@@ -54,10 +54,9 @@ class Pose:
         """Homogeneous (4, 4) float64 matrix, column vectors."""
         import numpy as np
 
-        result = np.eye(4)
-        result[:3, :3] = rotation_matrix(self.orientation)
-        result[:3, 3] = self.position
-        return result
+        x, y, z = self.position
+        first, second, third = _rotation_rows(self.orientation)
+        return np.array([(*first, x), (*second, y), (*third, z), (0.0, 0.0, 0.0, 1.0)])
 
 
 IDENTITY = Pose()
@@ -132,12 +131,14 @@ def rotation_matrix(q: Quaternion) -> np.ndarray:
     """(3, 3) float64 rotation matrix of a unit quaternion."""
     import numpy as np
 
+    return np.array(_rotation_rows(q))
+
+
+def _rotation_rows(q: Quaternion) -> tuple[Vector3, Vector3, Vector3]:
     x, y, z, w = q
-    return np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ])
+    return ((1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
+            (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)),
+            (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)))
 
 
 def symmetric_matrix(six: Sequence[float]) -> np.ndarray:

@@ -239,11 +239,15 @@ class Body:
 
     def speeds(self) -> tuple[float, float]:
         """Maximum speed, m/s, and angular velocity, rad/s, of base and joints; NaN if any is."""
+        joints = self.joints.index
+        if self.tree.fixed_base and not (joints or self.joints.ball_index):
+            return 0.0, 0.0
         linear, angular = self.engine.read(pybullet.getBaseVelocity)
         speed, rate = max(map(abs, linear)), max(map(abs, angular))
         total = sum(linear) + sum(angular)
-        for joint, index in self.joints.index.items():
-            moved = abs(self.engine.read(pybullet.getJointState, index)[1])
+        rows = self.engine.read(pybullet.getJointStates, list(joints.values())) if joints else ()
+        for joint, row in zip(joints, rows, strict=True):
+            moved = abs(row[1])
             total += moved
             if self.joints.description(joint).type == "prismatic":
                 speed = max(speed, moved)

@@ -17,11 +17,12 @@ class BodyLinks:
         links = engine.tree.links
         self.index = {link.name: number - 1 for number, link in enumerate(links)}  # the engine's
         self._others = list(range(len(links) - 1))  # all but the base
-        self._pose_base_com = IDENTITY
+        self._pose_base_com = self._com_pose_base = IDENTITY
 
     def set_up(self) -> None:
         """After the body was loaded: read where the base's centre of mass and its axes are."""
         self._pose_base_com = self.com_in_link(BASE)
+        self._com_pose_base = self._pose_base_com.inverse()
 
     def com_in_link(self, index: int) -> Pose:
         """Centre of mass and principal axes in the engine's link frame."""
@@ -33,8 +34,9 @@ class BodyLinks:
         states = {}
         base = self._engine.tree.links[0]
         linear, angular = self._engine.read(pybullet.getBaseVelocity)
+        com = Pose(*self._engine.read(pybullet.getBasePositionAndOrientation))
         states[base.described] = _described(
-            base, self.base_frame(), self._com_position(BASE), linear, angular
+            base, com * self._com_pose_base, com.position, linear, angular
         )
         rows = self._engine.read(
             pybullet.getLinkStates, self._others, computeLinkVelocity=1,
@@ -47,7 +49,7 @@ class BodyLinks:
     def base_frame(self) -> Pose:
         """The base link's frame in the world, from the engine."""
         pose_com = Pose(*self._engine.read(pybullet.getBasePositionAndOrientation))
-        return pose_com * self._pose_base_com.inverse()
+        return pose_com * self._com_pose_base
 
     def engine_frame(self, index: int) -> Pose:
         """Frame in the world of the engine's link with that number."""

@@ -117,8 +117,9 @@ class PhysicsClient:
                     body.wheels.update_inertia()
             self._correcting_velocity.before_step(self.timestep)
             pybullet.stepSimulation(physicsClientId=self._id)
-            for wheels in list(self.settling):
-                wheels.after_step()
+            if self.settling:
+                for wheels in list(self.settling):
+                    wheels.after_step()
             self._island_sleeping.after_step(self.auto_disable.is_sampling)
             if self.auto_disable.nearly_disabled:
                 for body in self.auto_disable.bodies:

@@ -50,10 +50,11 @@ class IslandSleeping:
 
     def after_step(self, sampling: bool) -> None:
         """`sampling`: at a sample of AutoDisable, disable bodies that have been slow."""
-        for push, args in self._late:
-            self._run(push, *args)
-        self._late.clear()
-        self._waking.clear()
+        if self._waking:
+            for push, args in self._late:
+                self._run(push, *args)
+            self._late.clear()
+            self._waking.clear()
         if not sampling:
             return
         poses = {body.number: self._run(pybullet.getBasePositionAndOrientation, body.number)

@@ -209,27 +209,29 @@ class EglRenderer:
         eye = np.array([*view.pose.position, 1.0], np.float32)
         prepared.lights.write(eye.tobytes(), offset=lights.EYE_OFFSET)
         prepared.lights.bind_to_uniform_block(LIGHTS_BINDING)
-        nodes = list(scene.nodes.values())
+        nodes, focal = list(scene.nodes.values()), view.focal_length_px
         seen = prepared.outlines.seen(nodes, clip_world, eye[:3])
         places = _shadow_places(prepared, nodes, seen, clip_world)
         target.start(scene.description.background)
         see_through = []
         for index in seen.order:
             node, clip_node = nodes[index], seen.clip_node[index]
-            pieces = [
-                piece for item, visible, depth in
-                zip(prepared.items[index], seen.parts[index], seen.depths[index], strict=True)
-                if visible for piece in _pieces(
-                    self._within(item, unseen * depth / view.focal_length_px),
-                    places.get(item.number), view)]
+            opaque, others = [], []
+            for item, visible, depth in zip(prepared.items[index], seen.parts[index],
+                                            seen.depths[index], strict=True):
+                if visible:
+                    (opaque if item.surface.opaque else others).extend(_pieces(
+                        self._within(item, unseen * depth / focal),
+                        places.get(item.number), view))
             rank = prepared.ranks.get(node.shape.plane_size, 0)
             self._context.polygon_offset = rank * self._quality.snap_px, rank * _RECESS
-            _render(target, node, [p for p in pieces if p[0].surface.opaque], clip_node)
-            see_through.append((node, [p for p in pieces if not p[0].surface.opaque], clip_node))
+            _render(target, node, opaque, clip_node)
+            if others:
+                see_through.append((node, others, clip_node))
         if scene.description.sky:
             self._context.polygon_offset = (0.0, 0.0)
             self._sky.draw(view)
-        if any(pieces for _, pieces, _ in see_through):
+        if see_through:
             target.blend()
             self._context.polygon_offset = (0.0, 0.0)
             for what in reversed(see_through):
@@ -240,8 +242,8 @@ def _render(target: Target, node: Node, pieces: list[_Piece], clip_node: np.ndar
     """Draw surfaces of one node."""
     if not pieces:
         return
-    model = node.matrix.T.astype(np.float32).tobytes()
-    projection_model = clip_node.T.astype(np.float32).tobytes()
+    model = node.matrix.astype(np.float32).tobytes("F")  # OpenGL's matrices: column by column
+    projection_model = clip_node.astype(np.float32).tobytes("F")
     for item, (program, array), scissor in pieces:
         program.model.write(model)
         program.projection_model.write(projection_model)

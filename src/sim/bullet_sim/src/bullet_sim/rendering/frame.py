@@ -63,13 +63,12 @@ _EYE_FROM_CAMERA = np.array([
 def projection_matrix(view: CameraView) -> np.ndarray:
     """(4, 4) from OpenGL's eye frame to clip space, first image row at y = +1."""
     focal, near, far = view.focal_length_px, view.near, view.far
-    matrix = np.zeros((4, 4))
-    matrix[0, 0] = 2 * focal / view.width
-    matrix[1, 1] = 2 * focal / view.height
-    matrix[2, 2] = -(far + near) / (far - near)
-    matrix[2, 3] = -2 * far * near / (far - near)
-    matrix[3, 2] = -1.0
-    return matrix
+    return np.array([
+        (2 * focal / view.width, 0.0, 0.0, 0.0),
+        (0.0, 2 * focal / view.height, 0.0, 0.0),
+        (0.0, 0.0, -(far + near) / (far - near), -2 * far * near / (far - near)),
+        (0.0, 0.0, -1.0, 0.0),
+    ])
 
 
 def view_matrix(pose: Pose) -> np.ndarray:

@@ -19,6 +19,9 @@ from bullet_sim.rendering.scene import LinkShape, Node
 NOWHERE = np.array([[1.0, 1.0], [-1.0, -1.0]])
 TILE = 64  # px
 
+# The methods of arrays go through Python first; few numbers take less time than that.
+_all, _any = np.logical_and.reduce, np.logical_or.reduce
+
 Scissor = tuple[int, int, int, int]  # px: left, first row, width, height
 
 
@@ -112,8 +115,8 @@ class Visibility:
     """For one image; row i of an array belongs to the scene's node i."""
 
     clip_node: np.ndarray  # (n, 4, 4), node frame to clip coordinates
-    parts: list[np.ndarray]  # for each node, whether each of its parts may be visible
-    depths: list[np.ndarray]  # m, of each of these parts' nearest corner from the camera
+    parts: list[list[bool]]  # for each node, whether each of its parts may be visible
+    depths: list[list[float]]  # m, of each of these parts' nearest corner from the camera
     order: list[int]  # nodes, nearest first; of those around the camera, small first
 
 
@@ -137,20 +140,21 @@ class Outlines:
         clip = clip_node[self._owner] @ self._corners
         axes, w = clip[:, :3], clip[:, 3:]
         # Outside if all corners are beyond the same side of the view.
-        outside = (axes < -w).all(axis=2) | (axes > w).all(axis=2)
-        parts = self.by_node(~outside.any(axis=1))
-        depths = self.by_node(clip[:, 3].min(axis=1))
-        centres = (world_node @ self._centres)[:, :3, 0]
-        gaps = np.maximum(0.0, np.linalg.norm(centres - eye, axis=1) - self._radii)
+        outside = _all(axes < -w, axis=2) | _all(axes > w, axis=2)
+        parts = self._by_node(~_any(outside, axis=1))
+        depths = self._by_node(np.minimum.reduce(clip[:, 3], axis=1))
+        away = (world_node @ self._centres)[:, :3, 0] - eye
+        gaps = np.maximum(0.0, np.sqrt(np.add.reduce(away * away, axis=1)) - self._radii)
         order = np.lexsort((self._radii, gaps)).tolist()
         return Visibility(clip_node, parts, depths,
-                          [index for index in order if parts[index].any()])
+                          [index for index in order if any(parts[index])])
 
     def boxes(self, nodes: Sequence[Node]) -> np.ndarray:
         """(n, 8, 3): corners in the world of boxes around every part of every node."""
         world_node = np.array([node.matrix for node in nodes]).reshape(-1, 4, 4)
         return (world_node[self._owner] @ self._corners)[:, :3].swapaxes(1, 2)
 
-    def by_node(self, of_parts: np.ndarray) -> list[np.ndarray]:
-        """Splits a value per part into an array for each node."""
-        return [of_parts[span] for span in self._spans]
+    def _by_node(self, of_parts: np.ndarray) -> list[list]:
+        """Splits a value per part into a list for each node."""
+        values = of_parts.tolist()
+        return [values[span] for span in self._spans]

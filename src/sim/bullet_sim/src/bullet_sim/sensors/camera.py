@@ -93,8 +93,8 @@ class Camera:
         """The current image; its arrays are the caller's own."""
         reading = self.render(self.capture(), depth)
         rgb = reading.rgb if reading.rgb.flags.writeable else reading.rgb.copy()
-        return replace(reading, rgb=rgb,
-                       depth=None if reading.depth is None else reading.depth.copy())
+        metres = None if reading.depth is None else reading.depth.copy()
+        return CameraReading(reading.time, rgb, metres)
 
     def capture(self) -> CaptureState:
         """The state for an image, not yet drawn. For the thread that owns the world."""
