@@ -138,16 +138,19 @@ def test_defaults_units_and_topics_are_those_of_the_code(site, path, row):
 def test_the_page_of_errors_has_each_line_of_ours_that_says_what_to_type(site):
     english, chinese = (page(site, f"{language}/reference/advice.html")
                         for language in ("en", "zh"))
-    assert sum(map(len, advice().values())) > 200
-    for rows in advice().values():
-        for says, do, translated in rows:
-            assert _line(says).strip(" `") in english, says
-            assert _line(do).strip(" `") in english, do
-            assert _line(translated).strip(" `") in chinese, translated
+    assert len(advice()) > 200
+    for says, do, translated in advice().values():
+        assert _line(says).strip(" `") in english, says
+        assert _line(do).strip(" `") in english, do
+        assert _line(translated).strip(" `") in chinese, translated
     for said in ("port … is root's", "Unable to communicate with master"):
         assert said in english
-    common = yaml.safe_load((TOOL / "errors.yaml").read_text("utf-8"))
+    sections = yaml.safe_load((TOOL / "advice.yaml").read_text("utf-8"))
+    common = [each for section in sections for each in section.get("common", ())]
     assert len(common) >= 20 and all(each["en"] and each["zh"] for each in common)
+    own, other = (english.rindex(title) for title in (
+        "The line follower and its simulator", "Trials and marking"))
+    assert own < english.rindex("A simulator runs already on this master") < other
 
 
 @pytest.mark.parametrize("line, says, do", [
@@ -176,12 +179,12 @@ def test_a_line_that_is_no_advice_is_left_out(line):
 
 
 def test_what_only_help_shows_is_no_advice():
-    found = {(says, do) for rows in advice().values() for says, do, _ in rows}
+    found = {(says, do) for says, do, _ in advice().values()}
     assert not any(says in ("", "list") or do == "go on" for says, do in found)
     program = ROOT / "src/compat/gazebo_ros/src/gazebo_ros/gz.py"
     assert "1: pause, 0: go on" in helps(program) and helps(ROOT / "scripts/help.sh") == set()
     shown = {f"{says}{between}{do}" for says, do in found for between in ("; ", ". ", ": ")}
-    assert not shown & set().union(*(helps(ROOT / place) for place in advice()))
+    assert not shown & set().union(*(helps(ROOT / place.split(": ")[0]) for place in advice()))
 
 
 def test_each_lesson_has_a_text_for_ros_2_or_a_line_that_takes_its_place(site):
@@ -274,7 +277,7 @@ def test_each_page_is_in_the_menu_once_and_a_new_place_is_named():
     chosen = [path for section in menu(pages.texts["en"], "en") for entries in section.values()
               for entry in entries for path in entry.values()]
     assert sorted(chosen) == sorted(pages.texts["en"])
-    with pytest.raises(ValueError, match=r"no section has elsewhere/a\.md"):
+    with pytest.raises(ValueError, match=r"sections\.yaml: no section has elsewhere/a\.md"):
         menu({"elsewhere/a.md": "# A"}, "en")
 
 

@@ -28,27 +28,12 @@ from mkdocs.config import load_config
 from mkdocs.exceptions import Abort, MkDocsException
 from reference import add_reference
 from ros2 import add_ros2
-from staging import HERE, ROOT, Pages, repository_pages, stage
+from staging import HERE, ROOT, SAYS, Pages, repository_pages, stage
 
 from bullet_sim.errors import SimulationError
 
 PARTS = {"index.html", "en", "zh", "demo"}  # what a site has
-NAMES = {"en": "ROS 1 driving courses", "zh": "ROS 1 小车课程"}
 REPLAY = ROOT / "out/course/run.html"
-START = """<!doctype html><meta charset="utf-8"><title>ROS 1 driving courses</title>
-<script>
-location.replace((navigator.language.startsWith("zh") ? "zh" : "en") + "/index.html");
-</script>
-<p><a href="en/index.html">English</a> <a href="zh/index.html">中文</a></p>
-"""
-DEMO = ("# A drive, to look at\n\nThe line follower's last lap on this machine, in 3D: drag turns "
-        "the view, the wheel zooms, the bar below is the time. `make course FAST=1` and then "
-        "`make site` put a new one here. <a href=\"../demo/run.html\">The page alone</a>\n\n",
-        "# 看一次行驶\n\n这台电脑上巡线小车最近一次行驶的 3D 回放："
-        "拖动可转动视角，滚轮缩放，下方是时间轴。"
-        "先 `make course FAST=1` 再 `make site` 就会换成新的。"
-        "<a href=\"../demo/run.html\">单独打开</a>\n\n")
-FRAME = '<iframe class="site-demo" src="../demo/run.html?{}" title="run.html"></iframe>\n'
 
 
 class SiteError(Exception):
@@ -85,8 +70,7 @@ def all_pages() -> Pages:
     add_reference(pages)
     add_advice(pages)
     add_ros2(pages)
-    pages.add("demo.md", *(text + FRAME.format(language)
-                           for text, language in zip(DEMO, ("en", "zh"))))
+    pages.add("demo.md", *(says["demo"] for says in SAYS.values()))
     return pages
 
 
@@ -95,14 +79,15 @@ def build_site(out: Path, replay: Path) -> None:
     search.jieba = SimpleNamespace(cut=short_words)
     for language, menu in stage(all_pages(), out / "pages"):
         config = load_config(str(HERE / "mkdocs.yml"), docs_dir=str(out / "pages" / language),
-                             site_dir=str(out / language), nav=menu, site_name=NAMES[language])
+                             site_dir=str(out / language), nav=menu,
+                             site_name=SAYS[language]["site"])
         config.theme["language"] = language
         config.plugins.on_startup(command="build", dirty=False)
         build(config)
         search_whole_words(out / language)
         (out / language / "404.html").unlink()  # of a server's root alone
     shutil.rmtree(out / "pages")
-    (out / "index.html").write_text(START, "utf-8")
+    shutil.copyfile(HERE / "start.html", out / "index.html")
     (out / "demo").mkdir()
     shutil.copyfile(replay, out / "demo/run.html")
     if wrong := faults(out):

@@ -5,11 +5,9 @@ from __future__ import annotations
 import ast
 import re
 import sys
-from collections import defaultdict
 from pathlib import Path
 
-import yaml
-from staging import HERE, ROOT, Pages
+from staging import ROOT, SAYS, Pages, in_sections, table
 
 sys.path.append(str(ROOT / "scripts"))
 from terminal_texts import LOCALES, sentence, unquoted
@@ -22,17 +20,8 @@ CUT = re.compile(
     r"see|send|set|source|spawn|start|stop|take|try|type(?! and| \S+ is)|unset|use|wait|write)\b"
     r"(?:(?<=type):|(?<=see):|,)?\s\S)", re.IGNORECASE)
 SIGNS = re.compile(r"(?<!\S)\W+(?!\S)")  # a word of no letters, such as a bracket that is meant
-VALUE = re.compile(r"\{\d+\}|\$\{?\w+\}?|%[sd]")
+VALUE = re.compile(r"\{\d+\}|\$\{[^{}]*\}|\$\((?!find|rospack|arg|eval)[^()]*\)|\$\w+|%[sd]")
 WORD = re.compile(r"[A-Za-z]+")
-SAYS = {"en": ("# It says X, type Y",
-               "What programs print, and what to do then. `…` stands for a name or a number. "
-               "The search finds a line by its words.",
-               "## Lines of ROS, Python and the system", "## Lines of these courses",
-               "| it says | do |"),
-        "zh": ("# 出现这句话，就这样做",
-               "程序打印的话，以及接下来怎么做。`…` 代表名称或数字。用搜索框可以按词找到某一行。",
-               "## ROS、Python 和系统的提示", "## 本课程的提示",
-               "| 英文 | 中文，和要做的 |")}
 ENTRY = re.compile(r'^((?:#: .*\n)+)(?:msgctxt .*\n)?msgid ((?:".*"\n)+)msgstr ((?:".*"\n)+)',
                    re.MULTILINE)
 
@@ -65,37 +54,36 @@ def helps(path: Path) -> set[str]:
             for line in sentence(string).split("\n")}
 
 
-def advice() -> dict[str, list[tuple[str, str, str]]]:
-    """By the file that prints it: what an English line says, its advice, and the Chinese line."""
-    found = defaultdict(list)
+def advice() -> dict[str, tuple[str, str, str]]:
+    """By "file: line": what an English line says, its advice, and the Chinese line."""
+    found = {}
     for name in ("courses", "courses-shell"):
         for places, *texts in ENTRY.findall((LOCALES / f"{name}.po").read_text("utf-8")):
             english, chinese = ("".join(map(unquoted, re.findall(r'^"(.*)"$', text, re.MULTILINE)))
                                 for text in texts)
             place = places.split()[1]
             if "/" in place and (parts := cut(english)) and english not in helps(ROOT / place):
-                found[place].append((*parts, chinese))
-    return dict(sorted(found.items()))
+                found[f"{place}: {english}"] = (*parts, chinese)
+    return found
 
 
 def add_advice(pages: Pages) -> None:
     """Add the page."""
-    common = yaml.safe_load((HERE / "errors.yaml").read_text("utf-8"))
     ours = advice()
     for language, texts in pages.texts.items():
-        title, text, first, second, head = SAYS[language]
-        lines = [title, "", text, "", first, "", head if language == "en" else "| 显示 | 怎么做 |",
-                 "|---|---|", *(f"| {_line(each['says'])} | {each[language]} |" for each in common),
-                 "", second, ""]
-        for place, rows in ours.items():
-            lines += [f"### {place.removeprefix('src/')}", "", head, "|---|---|"]
-            lines += [f"| {_line(says)} | {_line(do if language == 'en' else chinese)} |"
-                      for says, do, chinese in rows] + [""]
+        lines = [SAYS[language]["advice"]]
+        for section, names in in_sections("advice.yaml", ours):
+            common = [(_line(each["says"]), each[language]) for each in section.get("common", ())]
+            own = [(_line(says), _line(do if language == "en" else chinese))
+                   for says, do, chinese in dict.fromkeys(ours[name] for name in names)]
+            lines += [f"## {section[language]}", "",
+                      *table(language, "system says, do then", common),
+                      *table(language, "says, do", own)]
         texts["reference/advice.md"] = "\n".join(lines)
 
 
 def _line(text: str) -> str:
     """As code in a table's cell, with … for a value."""
-    text = VALUE.sub("…", text)
+    text = re.sub(r'\\(["$\\])', r"\1", VALUE.sub("…", text))  # as a shell prints it
     text = " ".join(text.split())
     return f"`` {text} ``" if "`" in text else f"`{text}`" if text else ""

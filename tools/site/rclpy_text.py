@@ -27,9 +27,8 @@ PARTS = r"\1.\2"
 SENSORS = {"Image", "LaserScan", "CameraInfo"}
 IN_A_THREAD = re.compile(r"rospy\.(on_shutdown|Rate|sleep|is_shutdown)\(")
 SIGNALS = "signal_handler_options=SignalHandlerOptions.NO"
-SPIN = "threading.Thread(target=rclpy.spin, args=[node{executor}], daemon=True).start()"
+SPIN = "threading.Thread(target=rclpy.spin, args=[node], daemon=True).start()"
 LONG = r"^(?=.{101})( *)(.*?(?:create_\w+|info|warning|error)\()(.*)$"
-LONG_GROUP = r"^(?=.{101})( *)(.*,) (callback_group=.*)$"
 
 
 def changed(old: str, new: str, text: str, flags: int) -> str:
@@ -70,7 +69,7 @@ class Program:
             self.begins.append(self.begins[-1] + len(line))
         self.threads = bool(rules.get("threads") or IN_A_THREAD.search(source))
         self.group = ", callback_group=MutuallyExclusiveCallbackGroup()" * (
-            "import threading" in source)  # as in rospy, each callback has a thread of its own
+            "threading.Condition" in source)  # a callback waits for another's: in rospy's threads
         self.messages = {}  # types of messages and services, and parts of these, by name
         self.topics = {}  # the type of what is published by, say, self.publisher
         self.handlers = set()  # names of services' functions
@@ -97,7 +96,6 @@ class Program:
         for old, new in RULES["texts"].items():
             text = re.sub(old.replace("NODE", self.node), new.replace("NODE", self.node), text)
         text = re.sub(LONG, r"\1\2\n\1    \3", text, flags=re.MULTILINE)
-        text = re.sub(LONG_GROUP, r"\1\2\n\1\3", text, flags=re.MULTILINE)
         lines = [line for name, line in RULES["imports"].items()
                  if re.search(rf"(?<!\w){name}", text) and f"{line}\n" not in text]
         first = [line for line in lines if line in ("import atexit", "import threading")]
@@ -226,8 +224,7 @@ class Program:
         lines = [f"rclpy.init({SIGNALS})" if self.threads else "rclpy.init()",
                  f"node = rclpy.create_node({self.code(call.args[0])})"]
         if self.threads:
-            executor = ", MultiThreadedExecutor()" * bool(self.group)
-            lines.append(SPIN.format(executor=executor))
+            lines.append(SPIN)
         inside = [each for each in self.tree.body if isinstance(each, ast.FunctionDef)
                   and self.place(each) < self.place(call) < self.place(each)[1:]]
         others = [each for each in self.tree.body if each not in inside]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import importlib.util
+import inspect
 import logging
 import sys
 import tempfile
@@ -29,7 +30,7 @@ TESTS = Path(__file__).resolve().parents[2] / "src/sim/bullet_sim_ros/test/confo
 class Seen:
     """Of one plugin or controller; names are paths, `joint/name`."""
 
-    read: dict[str, tuple[str, object]] = field(default_factory=dict)  # name -> kind, default
+    read: dict[str, tuple[bool, object]] = field(default_factory=dict)  # whether a number; default
     published: dict[str, str] = field(default_factory=dict)  # topic -> type
     heard: dict[str, str] = field(default_factory=dict)
     served: dict[str, str] = field(default_factory=dict)
@@ -69,71 +70,58 @@ def recorded(graph: Graph, kind: type = PluginParameters) -> Iterator[Seen]:
     for topic in [name for name, topic in graph.topics.items()
                   if not (topic.publishers or topic.subscribers)]:
         del graph.topics[topic]  # it would keep its type of an earlier example
-    before = (_open(graph, "publishers"), _open(graph, "subscribers"), dict(graph.services))
+    before = offered(graph)
 
-    def watch(name: str) -> Callable:
-        own = getattr(kind, name)
-
+    def watched(own: Callable) -> Callable:
         @functools.wraps(own)
         def reader(self, *args, **options):
-            if not inside and (note := _note(self, name, args, options)):
-                name_read, (kind_read, default) = note
-                kind_before, default_before = seen.read.get(name_read, note[1])
-                seen.read[name_read] = (  # first required, then read as a number
-                    kind_read if kind_before == "text" else kind_before,
-                    REQUIRED if default is REQUIRED else default_before)
-            inside.append(name)
+            if not inside:
+                given = inspect.signature(own).bind(self, *args, **options)
+                given.apply_defaults()
+                path, numeric, default = _note(own, given.arguments)
+                was_numeric, first = seen.read.get(path, (numeric, default))
+                seen.read[path] = (  # some are first required, then read as a number
+                    was_numeric or numeric, REQUIRED if default is REQUIRED else first)
+            inside.append(own)
             try:
                 return own(self, *args, **options)
             finally:
                 inside.pop()
         return reader
 
-    readers = [name for name in _DEFAULTS if name in vars(kind)]
-    kept = {name: getattr(kind, name) for name in readers}
-    for name in readers:
-        setattr(kind, name, watch(name))
-    try:
+    with mock.patch.multiple(kind, **{name: watched(own) for name, own in vars(kind).items()
+                                      if name in READERS}):
         yield seen
-    finally:
-        for name, own in kept.items():
-            setattr(kind, name, own)
-        for found, side, old in ((seen.published, "publishers", before[0]),
-                                 (seen.heard, "subscribers", before[1])):
-            found.update({topic: kind for topic, kind in _open(graph, side).items()
-                          if topic not in old})
-        seen.served.update({service: made[0]._type for service, made in graph.services.items()
-                            if service not in before[2]})
+    for side, kinds in offered(graph).items():
+        getattr(seen, side).update({name: kinds[name] for name in kinds
+                                    if name not in before[side]})
 
 
-# How a reader is called -> what is read, and the default where its arguments have none.
-_DEFAULTS = {"text": ("text", ""), "required": ("text", REQUIRED), "number": ("number", None),
-             "bound": ("number", None), "numbers": ("numbers", REQUIRED), "texts": ("texts", ""),
-             "deviation": ("number", 0.0), "vector": ("numbers", (0.0, 0.0, 0.0)),
-             "flag": ("flag", REQUIRED), "topic": ("text", ""), "namespace": ("text", ""),
-             "pair": ("texts", REQUIRED), "value": ("text", REQUIRED)}
+def offered(graph: Graph) -> dict[str, dict[str, str]]:
+    """What a graph has, as in Seen: names and types."""
+    return {"published": {name: topic.kind._type for name, topic in graph.topics.items()
+                          if topic.publishers},
+            "heard": {name: topic.kind._type for name, topic in graph.topics.items()
+                      if topic.subscribers},
+            "served": {name: kind._type for name, (kind, _call) in graph.services.items()}}
 
 
-def _note(reader, method: str, args: tuple, options: dict) -> tuple[str, tuple] | None:
-    kind, default = _DEFAULTS[method]
-    if method == "namespace":
-        return "robotNamespace", (kind, options.get("missing", args[0] if args else ""))
-    if method == "topic":
-        return options.get("tag", args[1] if len(args) > 1 else "topicName"), (kind, args[0])
-    name = args[0]
-    given = args[2:] if method == "numbers" and isinstance(reader, ControllerParameters) \
-        else () if method == "pair" else args[1:]
-    default = options.get("default", given[0] if given else default)
-    if isinstance(reader, ControllerParameters):
-        default = REQUIRED if default in ("", None) and not given else default
-        path = [*reader.namespace.split("/")[3:], name]
-    else:
-        path = [*reader._path, name]
-    return "/".join(path), (kind, default)
+# How a reader is called, whether it reads numbers, and its default where its arguments have none.
+READERS = {"text": (False, REQUIRED), "required": (False, REQUIRED), "flag": (False, REQUIRED),
+           "topic": (False, ""), "namespace": (False, ""), "texts": (False, ""),
+           "pair": (False, REQUIRED), "value": (False, REQUIRED), "number": (True, REQUIRED),
+           "bound": (True, REQUIRED), "numbers": (True, REQUIRED), "deviation": (True, 0.0),
+           "vector": (True, (0.0, 0.0, 0.0))}
 
 
-def _open(graph: Graph, side: str) -> dict[str, str]:
-    return {name: topic.kind._type for name, topic in graph.topics.items() if getattr(topic, side)}
+def _note(own: Callable, given: dict) -> tuple[str, bool, object]:
+    """What a call of a reader reads, whether it is a number, and its default."""
+    numeric, default = READERS[own.__name__]
+    name = given.get("tag", given.get("name", "robotNamespace"))
+    reader = given["self"]
+    above = (reader._path if isinstance(reader, PluginParameters)
+             else reader.namespace.split("/")[3:])
+    return "/".join([*above, name]), numeric, given.get("default", given.get("missing", default))
 
 
 def watched_plugin(library: str, made: tuple[object, Graph]) -> tuple[str, Seen]:

@@ -7,16 +7,10 @@ from collections import defaultdict
 from pathlib import PurePosixPath
 
 from rclpy_text import RULES, Program
-from staging import HERE, ROOT, Pages, tracked
+from staging import BROKEN, HERE, ROOT, SAYS, Pages, table, tracked
 
 PLACES = re.compile(r"src/(?:lessons/)?(?P<package>[^/]+)/")
 SPEAKS = re.compile(r"\b(rospy|rosbag|actionlib|rosgraph)\b|car_control\.node")
-SAYS = {"en": ("{} for ROS 2", "[The lessons]({}); [what changes](../ros2.md).",
-               "It does not speak to ROS, and stays as it is.", "A module of the programs here.",
-               "| package | programs |\n|---|---|"),
-        "zh": ("{} 的 ROS 2 版本", "[课程]({})；[有什么变化](../ros2.md)。",
-               "它不和 ROS 打交道，保持不变。", "这里的程序要用的模块。",
-               "| 包 | 程序 |\n|---|---|")}
 
 
 def lessons() -> dict[str, str]:
@@ -65,23 +59,23 @@ def add_ros2(pages: Pages) -> None:
     """Add all pages."""
     shown = twins()
     for language, texts in pages.texts.items():
-        title, links, stays, module, head = SAYS[language]
-        parts, names = defaultdict(list), defaultdict(list)
+        says, parts, names = SAYS[language], defaultdict(list), defaultdict(list)
         for name, text in sorted((shown | RULES["instead"]).items()):
             package, _, file = name.partition("/")
-            told = (stays if text is None else text[language] if isinstance(text, dict) else
-                    f"```python\n{text}```")
+            told = (says["stays"] if text is None else text[language] if isinstance(text, dict)
+                    else f"```python\n{text}```")
             if RULES["files"].get(name, {}).get("part"):
-                told = f"{module}\n\n{told}"
+                told = f"{says['module']}\n\n{told}"
             parts[package] += [f"## {file}\n" if file else "", told, ""]
             names[package] += [f"`{file}`"] if file else [told]
-        rows = [head]
-        for package in sorted(parts):
+        for package, told in parts.items():
             lesson = next(path for path in (f"src/{package}", f"src/lessons/{package}")
                           if (ROOT / path).exists())
             texts[f"docs/ros2/{package}.md"] = "\n".join(
-                [f"# {title.format(package)}", "", links.format(f"../../{lesson}/README.md"), "",
-                 *parts[package]])
-            rows.append(f"| [{package}](ros2/{package}.md) | {' '.join(names[package])} |")
-        text = (HERE / f"ros2.{language}.md").read_text("utf-8")
-        texts["docs/ros2.md"] = text.replace("{{lessons}}", "\n".join(rows))
+                [f"# {says['ros2 title'].format(package)}", "",
+                 says["ros2 links"].format(f"../../{lesson}/README.md"), "", *told])
+        rows = [(f"[{package}](ros2/{package}.md)", " ".join(names[package]))
+                for package in sorted(parts)]
+        text = BROKEN.sub("", (HERE / f"ros2.{language}.md").read_text("utf-8"))
+        texts["docs/ros2.md"] = text.replace(
+            "{{lessons}}", "\n".join(table(language, "package, programs", rows)))

@@ -9,9 +9,9 @@ import json
 import posixpath
 import re
 import subprocess
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from fnmatch import fnmatch
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 import yaml
@@ -33,7 +33,8 @@ CODE = re.compile(r"(^```.*?^```\s*?$|``.+?``|`[^`\n]+`)", re.MULTILINE | re.DOT
 HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)
 CODE_BLOCK = re.compile(r"^```.*?^```\s*?$", re.MULTILINE | re.DOTALL)
 TITLE = re.compile(r"^# (.+)$", re.MULTILINE)
-ENGLISH_ONLY = "!!! note \"\"\n    这一页只有英文。\n\n"
+SAYS = {language: {name: texts[i] for name, texts in yaml.safe_load(
+    (HERE / "words.yaml").read_text("utf-8")).items()} for i, language in enumerate(LANGUAGES)}
 
 
 @dataclass
@@ -69,7 +70,7 @@ def repository_pages() -> Pages:
         for language, source in (("en", path), ("zh", chinese if chinese in files else path)):
             text = OTHER_LANGUAGE.sub("", (ROOT / source).read_text("utf-8"), count=1)
             if language == "zh" and source == path:
-                text = TITLE.sub(lambda title: f"{title[0]}\n\n{ENGLISH_ONLY}", text, count=1)
+                text = TITLE.sub(r"\g<0>\n\n" + SAYS["zh"]["english only"], text, count=1)
             pages.texts[language][path] = text
     for language, texts in pages.texts.items():
         for path, text in texts.items():
@@ -156,19 +157,33 @@ def _with_links(text: str, page: str, pages: Pages, language: str) -> str:
     return re.sub(r"\0(\d+)\0", label_code, linked)
 
 
-def menu(texts: Mapping[str, str], language: str) -> list:
-    """mkdocs' nav: each page in the first section that names it; ValueError if none does."""
-    sections = yaml.safe_load((HERE / "sections.yaml").read_text("utf-8"))
-    left, made = sorted(texts), []
-    for section in sections:
-        chosen = [path for pattern in section["pages"] for path in left if fnmatch(path, pattern)]
-        chosen = list(dict.fromkeys(chosen))
-        left = [path for path in left if path not in chosen]
-        if chosen:
-            made.append({section[language]: [{title(texts[path]): path} for path in chosen]})
+def in_sections(file: str, names: Iterable[str]) -> list[tuple[dict, list[str]]]:
+    """Each section of a file and its names, in the order of the patterns that it `has`.
+
+    A name is in the first section with a pattern for it; ValueError if none has.
+    """
+    left, made = sorted(names), []
+    for section in yaml.safe_load((HERE / file).read_text("utf-8")):
+        chosen = list(dict.fromkeys(
+            name for pattern in section["has"] for name in left if fnmatchcase(name, pattern)))
+        left = [name for name in left if name not in chosen]
+        made.append((section, chosen))
     if left:
-        raise ValueError(f"sections.yaml: no section has {', '.join(left)}")
+        raise ValueError(f"{file}: no section has {', '.join(left)}")
     return made
+
+
+def menu(texts: Mapping[str, str], language: str) -> list:
+    """mkdocs' nav."""
+    return [{section[language]: [{title(texts[path]): path} for path in chosen]}
+            for section, chosen in in_sections("sections.yaml", texts) if chosen]
+
+
+def table(language: str, columns: str, rows: Iterable[Iterable[str]]) -> list[str]:
+    """A table's lines; none without rows. `columns`: words of words.yaml, with commas between."""
+    names = [SAYS[language][column] for column in columns.split(", ")]
+    lines = [f"| {' | '.join(cells)} |" for cells in rows]
+    return [f"| {' | '.join(names)} |", "|---" * len(names) + "|", *lines, ""] if lines else []
 
 
 def title(text: str) -> str:

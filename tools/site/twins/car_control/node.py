@@ -13,12 +13,12 @@ import rclpy
 import yaml
 from ament_index_python.packages import get_package_share_directory
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.executors import ExternalShutdownException
 from rclpy.signals import SignalHandlerOptions
 
 
 def start_node(name):
-    """A node whose callbacks run in threads of their own.  回调在各自的线程中执行。"""
+    """A node whose callbacks run in a thread beside the main one.  回调在另一个线程中执行。"""
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     node = rclpy.create_node(name)
     threading.Thread(target=_spin, args=[node], daemon=True).start()
@@ -27,7 +27,7 @@ def start_node(name):
 
 def _spin(node):
     try:
-        rclpy.spin(node, MultiThreadedExecutor())
+        rclpy.spin(node)
     except ExternalShutdownException:
         pass  # Ending.done()
 
