@@ -5,7 +5,7 @@ modules get the names that they had when a script was written, and rospy says wh
 ends at Ctrl-C wherever that comes, and loads without what a node seldom needs.
 A roslaunch that a program of ours refuses ends with one line; each begins without setuptools.
 Programs of ours print in the language of the locale, and end without a traceback at Ctrl-C, or when
-the reader of their output has ended.
+the reader of their output has ended. No traceback shows the lines of these amendments.
 """
 
 import _signal  # built in; signal takes as long as all these
@@ -28,6 +28,7 @@ AMENDMENTS = {
     "catkin_pkg.packages": ["launch_end.amend_packages"],
     "cv2": ["old_names.amend_cv2", "no_screen.amend_cv2"],
     "cv_bridge.boost.cv_bridge_boost": ["cv_bridge_colours.amend"],
+    "dynamic_reconfigure.client": ["reconfigured.amend_client"],
     "joint_state_publisher": ["old_names.amend_joint_state_publisher"],
     "numpy": ["old_names.amend_numpy", "quick_start.amend_numpy"],
     "roslaunch.loader": ["launch_end.amend_loader"],
@@ -148,11 +149,16 @@ def end_quietly():
     """
     shown = sys.excepthook
 
-    def show(kind, *rest):
+    def show(kind, error, trace):
         if not (kind in (KeyboardInterrupt, BrokenPipeError)
                 and (is_launcher() or is_program_of_ours())
                 and (kind is KeyboardInterrupt or is_unread())):
-            shown(kind, *rest)
+            if trace is not None:  # of a syntax error there is none
+                from python_amendments.own_frames import drop_own_frames
+
+                drop_own_frames(error, __file__)
+                trace = error.__traceback__
+            shown(kind, error, trace)
 
     def write_last_lines():
         try:

@@ -22,6 +22,7 @@ from ai_robot_tracking.detection.messages import (
 from ai_robot_tracking.detection.model import Model, ModelError
 from ai_robot_tracking.detection.newest import Newest
 from ai_robot_tracking.detection.settings import Settings
+from ai_robot_tracking.detection.silence import why_silent
 from ai_robot_tracking.parameters import own_parameters
 from node_basics.settings import SettingsError, load_settings
 from sensor_msgs.msg import Image
@@ -43,7 +44,7 @@ class ObjectDetector:
     def __init__(self, model, settings, topic, window):
         self.model, self.settings, self.window = model, settings, window
         self.pictures = Newest()
-        self.topic = topic
+        self.topic, self.reason = topic, ""
         self.detections = rospy.Publisher("~detections", Detection2DArray, queue_size=1)
         self.annotated = rospy.Publisher("~annotated", Image, queue_size=1)
         self.info = rospy.Publisher("~vision_info", VisionInfo, queue_size=1, latch=True)
@@ -75,8 +76,7 @@ class ObjectDetector:
                 if self.settings.max_rate > 0:  # in wall time, to limit the machine's load
                     due = now + 1 / self.settings.max_rate
             elif now - max(heard, due) > QUIET_TIME:
-                rospy.logwarn_throttle(COMPLAINT_TIME, f"no image on {self.topic} for "
-                                       f"{now - heard:.0f} s")
+                self.tell_silence(now - heard)
             if now - told > SKIP_TIME:
                 self.tell_skipped(now - told)
                 told = now
@@ -107,6 +107,18 @@ class ObjectDetector:
             if self.window:
                 cv2.imshow(WINDOW, cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
                 cv2.waitKey(1)  # ms
+
+    def tell_silence(self, span):
+        """Warn that no image has come for `span` s, and why; the same reason only once."""
+        try:
+            reason = why_silent(self.topic, rospy.get_published_topics(), rospy.get_name())
+        except OSError:  # the master has ended
+            reason = ""
+        if not reason:
+            rospy.logwarn_throttle(COMPLAINT_TIME, f"no image on {self.topic} for {span:.0f} s")
+        elif reason != self.reason:
+            rospy.logwarn(reason)
+        self.reason = reason
 
     def tell_skipped(self, span):
         """Log one line if images came faster than they were processed; `span` is in s."""

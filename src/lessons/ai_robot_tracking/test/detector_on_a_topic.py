@@ -15,11 +15,12 @@ import numpy as np
 import rospy
 import rostest
 from rosgraph_msgs.msg import Log
-from sensor_msgs.msg import Image
+from sensor_msgs.msg import Image, LaserScan
 from vision_msgs.msg import Detection2DArray, VisionInfo
 
 NODE, TOPIC = "/object_detector", "/any/image_topic"
 LIMIT = 60.0  # wall s
+QUIET_TIME = 5.0  # wall s without an image, until the node says why
 HELD_RATE = 5.0  # pictures a second that the node may look at
 
 
@@ -107,6 +108,29 @@ class Detector(unittest.TestCase):
         self.wait(lambda: self.found and self.found[-1].header.stamp.secs == last, "the last one")
         looked = [f for f in self.found if 300 < f.header.stamp.secs <= last]
         self.assertLessEqual(len(looked), (time.monotonic() - began) * HELD_RATE + 2)
+
+    def test_a_topic_of_another_type_is_said_once(self):
+        network = Path(__file__).resolve().parent / "detection_data" / "patches_v8.onnx"
+        scans = rospy.Publisher("/scan", LaserScan, queue_size=1, latch=True)
+        scans.publish(LaserScan())
+        node = subprocess.Popen(
+            ["rosrun", "ai_robot_tracking", "object_detector.py", "__name:=other_type",
+             f"_model:={network}", "image:=/scan"])
+        try:
+            self.wait(lambda: self.lines_of("/other_type", "no image"), "the reason")
+            time.sleep(2 * QUIET_TIME)  # in which it would be said again
+        finally:
+            node.kill()
+            node.wait()
+            scans.unregister()
+        (line,) = self.lines_of("/other_type", "no image")
+        self.assertIn("it carries messages of type sensor_msgs/LaserScan. Topics with images: ",
+                      line)
+        self.assertIn(TOPIC, line)
+
+    def lines_of(self, node, text):
+        """What a node has said with this text."""
+        return [line.msg for line in self.said if line.name == node and text in line.msg]
 
     def test_a_wrong_model_ends_the_node_with_one_line(self):
         with tempfile.NamedTemporaryFile(suffix=".onnx") as file:

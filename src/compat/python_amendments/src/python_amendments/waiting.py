@@ -20,7 +20,7 @@ TURTLES = "turtlesim/Pose"
 SEEN = ("nav_msgs/Odometry", "sensor_msgs/CompressedImage", "sensor_msgs/Image",
         "sensor_msgs/LaserScan", TURTLES)  # by nodes that drive
 # Programs that have loaded one of these say themselves which topic is silent.
-WATCH_THEMSELVES = {"nav_nodes", "run_session"}
+WATCH_THEMSELVES = {"ai_robot_tracking.detection", "nav_nodes", "run_session"}
 SIMULATOR = "gazebo"  # node name, in any namespace
 GRACE = 5.0  # s, wall: a node that ends together with its simulator says nothing
 OF_A_LAUNCH = "__log:="  # an argument of its nodes, which start before what they wait for

@@ -44,6 +44,14 @@ class EntryServer(Server):
         self._stores = stores
         super().__init__(described(list(entries)), change, namespace)
 
+    def _clamp(self, config: dict) -> None:
+        wanted = dict(config)
+        super()._clamp(config)
+        for name, value in wanted.items():
+            if config[name] != value:
+                rospy.logwarn("dynamic_reconfigure: %s is now %s, not %s: it must be from %s to %s",
+                              name, config[name], value, self.type.min[name], self.type.max[name])
+
     def _copy_from_parameter_server(self) -> None:
         """Does nothing."""
 
