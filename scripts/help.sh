@@ -5,6 +5,7 @@
 #   scripts/help.sh --no-command WORD          says that make has no such command, and which is meant
 #   scripts/help.sh --no-command-of MAKEFILE WORD  the same of another Makefile's commands
 #   scripts/help.sh --no-option COMMAND WORD...   the same of an option
+#   scripts/help.sh --no-option-of MAKEFILE COMMAND WORD...  the same of another Makefile's
 #   scripts/help.sh --no-switch NAME=...       says what these options may be
 #   scripts/help.sh --no-number COMMAND NAME=VALUE...  the same of the first that is no number, or 0 where that cannot
 #                                                      be, if any; all of these for the Makefiles
@@ -32,6 +33,12 @@ no_command() {
   mapfile -t verbs < <(sed -n 's/^\([a-z-]*\):.*## .*/\1/p' "$1")
   say $"make has no command $2;""$(meant "$2" "${verbs[@]}")"$" \`make\` alone lists them"
 }
+# The same of an option; after it, the others that were typed.
+no_option() {
+  local options verb=$2 names=${*:3}
+  mapfile -t options < <(sed -n "/^${2%% *}:/,/^$/p" "$1" | grep -oE '\$\([A-Z_]+\)' | tr -d '$()' | sed 's/^WHERE$/WORKERS\nSCHEDULER/' | sort -u)
+  say $"make $verb has no option $names;""$(meant "${3%=}" "${options[@]}")"$" \`make\` alone lists the options of each command"
+}
 case "${1:-}" in
   --no-command)
     lesson=src/lessons/lane_keeping
@@ -41,10 +48,8 @@ case "${1:-}" in
     fi
     no_command "$root/Makefile" "$2" ;;
   --no-command-of) no_command "$2" "$3" ;;
-  --no-option)
-    mapfile -t options < <(sed -n "/^${2%% *}:/,/^$/p" "$root/Makefile" | grep -oE '\$\([A-Z_]+\)' | tr -d '$()' | sed 's/^WHERE$/WORKERS\nSCHEDULER/' | sort -u)
-    verb=$2 names=${*:3}
-    say $"make $verb has no option $names;""$(meant "${3%=}" "${options[@]}")"$" \`make\` alone lists the options of each command" ;;
+  --no-option) no_option "$root/Makefile" "${@:2}" ;;
+  --no-option-of) no_option "${@:2}" ;;
   --no-switch) names=${*:2}; say $"$names: write 1 or 0, or leave it out" ;;
   --no-number)
     for given in "${@:3}"; do

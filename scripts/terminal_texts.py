@@ -99,7 +99,10 @@ OF_SHELL = (
     "nano",
     "rosed: {0} has no screen here, and no other editor is installed; type: sudo apt-get install "
     "nano",
-    "{0} {1} is in C++ and not built yet; type: make -C {2} build CPP=1")
+    "{0} {1} is in C++ and not built yet; type: make -C {2} build CPP=1",
+    "No ROS master: first type make sim in another terminal.",  # of lane_keeping's Makefile
+    "No simulator runs: first type make sim in another terminal.",
+    "No bridge is needed: the simulator's topics are ROS 1 topics.")
 ABSENT = "src/workspace_needs/data/absent.yaml"
 CHECK = "src/workspace_needs/src/workspace_needs/check/findings.py"
 # Words in the tables and progress lines of evaluation and marking (terminal_language.heading).

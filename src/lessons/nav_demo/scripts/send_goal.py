@@ -68,11 +68,11 @@ def wait_for_move_base(client):
 def tell_progress(feedback):
     """Called repeatedly while driving.  途中反复调用。"""
     place = feedback.base_position.pose.position
-    rospy.loginfo_throttle(2, f"at {place.x:.2f}, {place.y:.2f}")
+    rospy.loginfo_throttle(2, f"the car is at {place.x:.2f}, {place.y:.2f}")
 
 
-def why_no_plan(grid, x, y):
-    """What the map has at a place in m; grid: an OccupancyGrid.  地图上这个位置是什么。"""
+def fault_on_map(grid, x, y):
+    """Why no car can be there, m; empty if it may; grid: OccupancyGrid.  为什么到不了这个位置。"""
     info = grid.info
     west, south = info.origin.position.x, info.origin.position.y
     column, row = (math.floor(way / info.resolution) for way in (x - west, y - south))
@@ -81,12 +81,25 @@ def why_no_plan(grid, x, y):
                        for start, cells in ((west, info.width), (south, info.height)))
         return (f"{x:g}, {y:g} is off the map, which has x {west:.1f} to {east:.1f} m and "
                 f"y {south:.1f} to {north:.1f} m")
-    cell = grid.data[row * info.width + column]
-    if cell < 0:
-        return f"the map does not know what is at {x:g}, {y:g}"
-    if cell >= OCCUPIED:
+    if grid.data[row * info.width + column] >= OCCUPIED:  # -1: unknown, perhaps free  -1 为未知
         return f"the map has an obstacle at {x:g}, {y:g}"
-    return f"no way leads to {x:g}, {y:g}, or it is too near to a wall"
+    return ""
+
+
+def newest_map():
+    """None where the navigation has none.  没有地图时为 None。"""
+    try:
+        return rospy.wait_for_message("map", OccupancyGrid, SOON)
+    except rospy.ROSException:
+        return None
+
+
+def refuse_at_once(x, y):
+    """Exits with one line, where move_base would try for a minute.  去不了的位置立刻拒绝。"""
+    grid = newest_map()
+    fault = fault_on_map(grid, x, y) if grid else ""
+    if fault:
+        sys.exit(f"{fault}; the goal was not sent")
 
 
 def tell_outcome(client, x, y):
@@ -94,10 +107,8 @@ def tell_outcome(client, x, y):
     text = client.get_goal_status_text()
     rospy.loginfo(text)
     if "valid plan" in text:
-        try:
-            rospy.loginfo(why_no_plan(rospy.wait_for_message("map", OccupancyGrid, SOON), x, y))
-        except rospy.ROSException:
-            pass  # navigation without a map  没有地图的导航
+        rospy.loginfo(f"no way leads to {x:g}, {y:g}: the map does not know it, or it is behind "
+                      "a wall or too near to one")
     return client.get_state() == GoalStatus.SUCCEEDED
 
 
@@ -115,6 +126,7 @@ def main():
         sys.exit("stopped before the goal was sent")
     client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
     wait_for_move_base(client)
+    refuse_at_once(x, y)
     client.send_goal(goal_at(x, y, math.radians(degrees)), feedback_cb=tell_progress)
     rospy.on_shutdown(lambda: stop_if_driving(client))
     client.wait_for_result()

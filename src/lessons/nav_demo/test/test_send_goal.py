@@ -36,16 +36,30 @@ def test_help(script, word, capsys):
     assert end.value.code == 0 and "send_goal.py X Y [DEGREES]" in capsys.readouterr().out
 
 
+@pytest.fixture
+def grid(script):
+    """4 x 2 cells of 0.5 m: the first unknown, the second occupied, all others free."""
+    made = script.OccupancyGrid(data=[-1, 100, 0, 0, 0, 0, 0, 0])
+    made.info.width, made.info.height, made.info.resolution = 4, 2, 0.5
+    made.info.origin.position.x, made.info.origin.position.y = -1, -2
+    return made
+
+
 @pytest.mark.parametrize(("place", "why"), [
     ((30, 0), "30, 0 is off the map, which has x -1.0 to 1.0 m and y -2.0 to -1.0 m"),
-    ((-0.9, -1.9), "the map does not know what is at -0.9, -1.9"),
-    ((-0.1, -1.9), "the map has an obstacle at -0.1, -1.9"),
-    ((0.9, -1.1), "no way leads to 0.9, -1.1, or it is too near to a wall")])
-def test_why_there_is_no_plan(script, place, why):
-    grid = script.OccupancyGrid(data=[-1, 100, 0, 0, 0, 0, 0, 0])
-    grid.info.width, grid.info.height, grid.info.resolution = 4, 2, 0.5
-    grid.info.origin.position.x, grid.info.origin.position.y = -1, -2
-    assert script.why_no_plan(grid, *place) == why
+    ((-0.1, -1.9), "the map has an obstacle at -0.1, -1.9")])
+def test_where_no_car_can_be_no_goal_is_sent(script, grid, monkeypatch, place, why):
+    monkeypatch.setattr(script, "newest_map", lambda: grid)
+    with pytest.raises(SystemExit) as end:
+        script.refuse_at_once(*place)
+    assert end.value.code == f"{why}; the goal was not sent"
+
+
+@pytest.mark.parametrize("place", [(-0.9, -1.9), (0.9, -1.1)])  # unknown, free
+def test_elsewhere_and_without_a_map_move_base_decides(script, grid, monkeypatch, place):
+    for found in (grid, None):
+        monkeypatch.setattr(script, "newest_map", lambda found=found: found)
+        script.refuse_at_once(*place)
 
 
 def test_ctrl_c_before_there_is_a_clock_asks_nobody_any_more(script, monkeypatch):
@@ -72,6 +86,7 @@ def test_ctrl_c_on_the_way_says_that_the_goal_is_cancelled(script, monkeypatch):
     monkeypatch.setattr(script.rospy.Time, "now", lambda: script.rospy.Time(1))
     monkeypatch.setattr(script.actionlib, "SimpleActionClient", lambda *_: client())
     monkeypatch.setattr(script, "wait_for_move_base", lambda _: None)
+    monkeypatch.setattr(script, "refuse_at_once", lambda *_: None)
     with pytest.raises(SystemExit, match=r"^stopped on the way: the goal is cancelled$"):
         script.main()
 

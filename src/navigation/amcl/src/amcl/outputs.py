@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 import rospy
-import tf2_ros
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import PoseArray, PoseWithCovarianceStamped
 
 from amcl.conversions import ParticleCloud, pose_with_covariance
 from nav_algorithms.estimates import Estimate
+from nav_nodes.broadcasting import SoleBroadcaster
 from nav_nodes.messages import transform_message
 
 
@@ -40,7 +40,7 @@ class Outputs:
                                      latch=True)
         self._cloud = rospy.Publisher("particlecloud", PoseArray, queue_size=2)
         self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=2)
-        self._transforms = tf2_ros.TransformBroadcaster()
+        self._transforms = SoleBroadcaster()
         self._newest_cloud = rospy.Time(0)
         self._latest: rospy.Time | None = None  # the stamp of the last transform
 

@@ -20,6 +20,7 @@ from fake_localization.poses import (
     transform_matrix,
     transform_of,
 )
+from nav_nodes.broadcasting import SoleBroadcaster
 from nav_nodes.missing_data import MissingData, is_published, watch_clock, why_silent
 from nav_nodes.program import run_node
 from nav_nodes.transforms import NEWEST, Transforms
@@ -52,7 +53,7 @@ class FakeLocalization:
         self._pose_topic = rospy.Publisher("amcl_pose", PoseWithCovarianceStamped, queue_size=1,
                                            latch=True)
         self._particle_topic = rospy.Publisher("particlecloud", PoseArray, queue_size=1, latch=True)
-        self._broadcaster = tf2_ros.TransformBroadcaster()
+        self._broadcaster = SoleBroadcaster()
         rospy.Subscriber("initialpose", PoseWithCovarianceStamped, self._take_initial_pose)
         self._truth = rospy.Subscriber("base_pose_ground_truth", Odometry, self._take_truth,
                                        queue_size=WAITING)

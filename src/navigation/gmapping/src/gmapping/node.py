@@ -7,13 +7,13 @@ import time
 
 import numpy as np
 import rospy
-import tf2_ros
 from nav_msgs.msg import MapMetaData, OccupancyGrid
 from nav_msgs.srv import GetMap, GetMapRequest, GetMapResponse
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64
 
 from gmapping.mapper import TABLE, Mapper, ScanError
+from nav_nodes.broadcasting import SoleBroadcaster
 from nav_nodes.laser_mount import Mount, Mounts
 from nav_nodes.messages import MapAnswer, grid_message, transform_message
 from nav_nodes.missing_data import MissingData, TopicWatchdog, watch_clock
@@ -110,7 +110,7 @@ class SlamNode:
         """Broadcasts the transform at a wall-clock rate, and checks whether scans still come."""
         period = self._values["transform_publish_period"]
         delay = self._values["tf_delay"] if self._values["tf_delay"] >= 0 else period
-        broadcaster, last = tf2_ros.TransformBroadcaster(), rospy.Time(0)
+        broadcaster, last = SoleBroadcaster(), rospy.Time(0)
         while not rospy.is_shutdown():
             now = rospy.Time.now()
             if period > 0 and now != last:  # a repeated stamp makes every listener warn

@@ -8,7 +8,6 @@ from dataclasses import fields
 
 import numpy as np
 import rospy
-import tf2_ros
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from nav_msgs.msg import MapMetaData, OccupancyGrid, Odometry
 from nav_msgs.srv import GetMap, GetMapRequest, GetMapResponse
@@ -18,6 +17,7 @@ from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
 from nav_algorithms import poses
 from nav_algorithms.scan_slam import ScanSlam, ScanSlamSettings
+from nav_nodes.broadcasting import SoleBroadcaster
 from nav_nodes.laser_mount import Mount, Mounts
 from nav_nodes.messages import MapAnswer, grid_message, pose_of, stamped_pose, transform_message
 from nav_nodes.missing_data import MissingData, TopicWatchdog, watch_clock
@@ -56,7 +56,7 @@ class HectorMapping:
         self._transforms = Transforms(self._missing_data, (self._odom_frame, self._base_frame))
         self._mounts = Mounts(self._base_frame, self._transforms, self._missing_data)
         self._watchdog = TopicWatchdog(self._missing_data, "laser scans", values["scan_topic"])
-        self._broadcaster = tf2_ros.TransformBroadcaster()
+        self._broadcaster = SoleBroadcaster()
         self._sent = rospy.Time(0)
         self._reset()
         self._map_topic = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
