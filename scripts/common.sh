@@ -82,6 +82,11 @@ followers() {
   package=$(course_key "$1" follower_package) pattern=$(course_key "$1" followers) drives_by=$(course_key "$1" drives_by)
   [ -z "$drives_by" ] || (cd "$root"/src/"$package"/"${pattern%/*}" && grep -lF -e "$drives_by" -- ${pattern##*/}) 2> /dev/null
 }
+# Of lane keeping, the usual one first.
+methods() {
+  (cd "$root/src/lessons/lane_keeping/src/lane_keeping/methods" && echo sliding_windows &&
+    printf '%s\n' [!_]*.py | sed 's/\.py$//' | grep -vx sliding_windows) 2> /dev/null
+}
 
 # Sets up what a trial with these arguments needs.
 set_up_trial() {

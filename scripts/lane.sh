@@ -9,14 +9,15 @@
 # the lane, stalled or ran out of time; 2: it could not run.
 failure_code=2
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
-course=lane methods=$root/src/lessons/lane_keeping/src/lane_keeping/methods
+course=lane
 arguments=()
 while (($#)); do
   case $1 in
     --empty) course=lane_empty ;;
     --method)
-      there=$(cd "$methods" && printf '%s ' [!_]*.py | sed 's/\.py / /g; s/ $//')
-      [ -f "$methods/${2:-}.py" ] || fail $"no method '${2:-}' (METHOD=); there are: $there"
+      value=${2:-}
+      mapfile -t names < <(methods)
+      known "$value" $"no method '$value' (METHOD=); there are:" "${names[@]}"
       arguments+=(--follower "$2.py"); shift ;;
     *) arguments+=("$1") ;;
   esac

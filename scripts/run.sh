@@ -34,6 +34,10 @@ for at in "${!words[@]}"; do
         fail $"--camera (CAMERA=) must be WIDTHxHEIGHT in px, as 640x480; got '$value'" ;;
     "track --scene")
       known "$value" $"no scene '$value' (SCENE=); there are:" $(quoted_words src/lessons/ai_robot_tracking/src/ai_robot_tracking/scenes/scene.py "KINDS = (" ")") ;;
+    "track --tracker") known "$value" $"no tracker '$value' (TRACKER=); there are:" visual_tracker.py visual_tracker_pid.py ;;
+    "lane_trials --method")
+      mapfile -t names < <(methods)
+      known "$value" $"no method '$value' (METHOD=); there are:" "${names[@]}" ;;
     "autorace --mission") known "$value" $"no mission '$value' (MISSION=); there are:" $(quoted_words src/evaluation/src/evaluation/autorace.py "^TASKS = {" "^}") all ;;
     "chaos --course") known "$value" $"no course '$value' (COURSE=); there are:" course race lane_empty ;;
     "soak --course") known "$value" $"no course '$value' (COURSE=); there are:" course race navigation ;;

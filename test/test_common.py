@@ -170,7 +170,7 @@ def test_a_method_that_is_not_there_is_one_line():
     done = subprocess.run([ROOT / "scripts/lane.sh", "--method", "nope"], text=True,
                           capture_output=True, check=False)
     assert done.returncode == 2 and not done.stdout
-    assert done.stderr.startswith("lane: no method 'nope' (METHOD=); there are: banded_centroids ")
+    assert done.stderr.startswith("lane: no method 'nope' (METHOD=); there are: sliding_windows, ")
     assert len(done.stderr.splitlines()) == 1
 
 

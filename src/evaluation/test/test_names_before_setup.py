@@ -7,6 +7,8 @@ import pytest
 from ai_robot_tracking.scenes.scene import KINDS
 
 from evaluation.autorace import TASKS
+from evaluation.lane_trials import known_methods
+from evaluation.track import TRACKERS
 from run_session.course_file import drivers, load_course
 
 SCRIPTS = Path(__file__).resolve().parents[3] / "scripts"
@@ -27,6 +29,11 @@ def followers(course):
      "course: --camera (CAMERA=) must be WIDTHxHEIGHT in px, as 640x480; got '640'"),
     (["track", "--scene", "dark"],
      f"track: no scene 'dark' (SCENE=); there are: {', '.join(KINDS)}"),
+    (["track", "--tracker", "pid"],
+     f"track: no tracker 'pid' (TRACKER=); there are: {', '.join(TRACKERS)}"),
+    *(([script, "--method", "magic"],
+       f"{script}: no method 'magic' (METHOD=); there are: {', '.join(known_methods())}")
+      for script in ("lane_trials", "lane")),
     (["autorace", "--mission", "park"],
      f"autorace: no mission 'park' (MISSION=); there are: {', '.join(TASKS)}"),
     (["chaos", "--course", "x"],

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Exercise own_speed: a parameter sets the turtle's speed.  练习：速度由参数决定。"""
 
+import sys
+
 import rospy
 from geometry_msgs.msg import Twist
 
@@ -10,7 +12,10 @@ RATE_HZ = 10
 
 def speed():
     """The speed in m/s; called for each command.  每条命令都会调用。"""
-    return rospy.get_param("~speed", SPEED)
+    value = rospy.get_param("~speed", SPEED)
+    if type(value) not in (int, float):  # a text cannot be sent as a speed  文字不能当作速度
+        sys.exit(f"{rospy.resolve_name('~speed')} must be a number in m/s, not {value}")
+    return value
 
 
 def main():

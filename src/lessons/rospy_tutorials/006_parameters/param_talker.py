@@ -13,8 +13,23 @@ def read():
     default = rospy.get_param("default_param", "default_value")
     rospy.loginfo("%s is %s", rospy.resolve_name("default_param"), default)
     gains = rospy.get_param("gains")  # a group is a dictionary  一组参数是字典
+    utterance, topic = rospy.get_param("utterance"), rospy.get_param("~topic_name")
+    fault = fault_of(utterance, topic, gains)
+    if fault:
+        rospy.logfatal(fault)
+        raise SystemExit(1)
     rospy.loginfo("gains are %s, %s, %s", gains["P"], gains["I"], gains["D"])
-    return rospy.get_param("utterance"), rospy.get_param("~topic_name")
+    return utterance, topic
+
+
+def fault_of(utterance, topic, gains):
+    """Which parameter is of another type than it must be, in a line.  哪个参数的类型不对。"""
+    for name, value, kind, wanted in (("utterance", utterance, str, "a text"),
+                                      ("~topic_name", topic, str, "a text"),
+                                      ("gains", gains, dict, "a group with P, I and D")):
+        if not isinstance(value, kind):
+            return f"the parameter {rospy.resolve_name(name)} must be {wanted}, not {value}"
+    return ""
 
 
 def write():
