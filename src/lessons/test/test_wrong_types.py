@@ -46,5 +46,5 @@ def test_own_speed(load):
     solution = "learning_parameter/solutions/own_speed.py"
     assert load(solution, speed=2).speed() == 2
     for value in ("fast", True, [1.0]):
-        with pytest.raises(SystemExit, match="^/node/speed must be a number in m/s, not "):
+        with pytest.raises(SystemExit, match=r"^/node/speed must be a number in m/s, not "):
             load(solution, speed=value).speed()
