@@ -31,7 +31,8 @@ class KillsSimulator(unittest.TestCase):
         wait_until(lambda: self.client.wait_for_server(rospy.Duration(0.1)), "move_base")
 
     def note(self, message):
-        if message.name == "/move_base" and message.level >= Log.WARN:
+        # One of the two says that time stands.
+        if message.name in ("/move_base", "/map_server") and message.level >= Log.WARN:
             self.lines.append((time.monotonic(), message.msg))
 
     def count(self, _message):

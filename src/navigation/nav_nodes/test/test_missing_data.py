@@ -1,5 +1,6 @@
 """Data that a node waits for: what is said, and once, by watchdogs of topics and of all inputs."""
 
+import uuid
 from types import SimpleNamespace
 
 import pytest
@@ -14,6 +15,8 @@ from nav_nodes.missing_data import MissingData, TopicWatchdog, is_published, why
 def say(monkeypatch):
     """Lets time run and collects (s, line); `say.missing_data` are to be used."""
     at = {"now": 0.0}
+    terminal = uuid.uuid4().int  # tests run beside each other
+    monkeypatch.setattr(missing_data.os, "getppid", lambda: terminal)
     monkeypatch.setattr(missing_data.time, "monotonic", lambda: at["now"])
     lines = []
     monkeypatch.setattr(rospy, "logwarn", lambda text, *values: lines.append(
@@ -79,6 +82,23 @@ def test_while_a_root_is_missing_nothing_else_is_said(say):
             say.missing_data.present("clock")
     assert say(8.0, all_of_it) == [(1.75, "no clock for 2 s"), (6.75, "no clock for 6 s"),
                                    (7.0, "clock: there again"), (7.25, "no scan for 7 s")]
+
+
+def test_one_node_of_a_launch_says_what_all_miss(say, monkeypatch):
+    def nobody_ticks(missing_data):
+        return lambda _: missing_data.missing("clock", is_root=True)
+    other = MissingData()
+    assert len(say(2.0, nobody_ticks(other))) == 1
+    assert say(12.0, nobody_ticks(say.missing_data)) == []
+    monkeypatch.setattr(missing_data.os, "getppid", lambda: 0)  # in another terminal
+    assert say(19.0, nobody_ticks(say.missing_data))
+
+
+def test_when_its_process_ends_another_one_says_it(say):
+    first = MissingData()
+    assert say(2.0, lambda _: first.missing("clock", is_root=True))
+    first._speaker._held.close()
+    assert say(9.0, lambda _: say.missing_data.missing("clock", is_root=True))
 
 
 def test_a_result_is_not_said_with_its_cause(say):

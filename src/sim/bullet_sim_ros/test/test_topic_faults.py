@@ -58,6 +58,13 @@ def test_two_that_send_at_once_are_two_drivers(monkeypatch):
     assert not lines(contested(senders.recent(now), types))
 
 
+def test_two_nodes_on_all_topics_of_a_car_are_one_line():
+    topics = [f"/racecar/wheel_{number}/command" for number in range(6)]
+    line, = lines(contested({topic: ["/one", "/two"] for topic in topics},
+                            dict.fromkeys(topics, FLOAT)))
+    assert line.startswith(f"/one, /two send commands on {', '.join(topics[:5])} ... at the same")
+
+
 def test_who_is_silent_is_forgotten():
     senders = Senders()
     for number in range(1000):

@@ -40,6 +40,7 @@ from nav_nodes.transforms import Transforms
 
 OUTLINE = ("footprint", "robot_radius", "footprint_padding")
 ANY_OBSTACLES = "obstacles"  # the default of clear_costmap_recovery's layer_names
+EASY = 0.8  # of the time between two updates, for one of them
 IDLE = 0.1                   # s of wall time between two checks while there is nothing to do
 OVERDUE = 1.0                # s, least age of the last update at which it is no longer current
 
@@ -219,8 +220,10 @@ class CostmapROS:
         if took < 0:  # else it would sleep until the old time is reached
             raise rospy.ROSTimeMovedBackwardsException(took)
         if took > period:
-            rospy.logwarn_throttle(5.0, "%s: an update took %.2f s, but update_frequency is %g Hz",
-                                   self.name, took, frequency)
+            rospy.logwarn_throttle(5.0, "%s: an update took %.2f s, but update_frequency is %g Hz: "
+                                        "end other programs, or write in its YAML file "
+                                        "update_frequency: %.1g, or a larger resolution",
+                                   self.name, took, frequency, EASY / took)
         rospy.sleep(max(period - took, 0.001))
 
     def _publish_if_due(self) -> None:

@@ -1,10 +1,13 @@
 """Who is silent, and for how long: one line for all that is missing, at most every 5 s.
 
-While the simulated clock does not run, one line is logged about that, and no other.
+While the simulated clock does not run, one line is logged about that, and no other, by one of the
+nodes of a launch file.
 """
 
 from __future__ import annotations
 
+import os
+import socket
 import threading
 import time
 from collections.abc import Iterator
@@ -36,6 +39,25 @@ class _Absence:
     said: float | None = None
 
 
+class Speaker:
+    """Lets one of the nodes that a roslaunch, or a terminal, has started speak for all of them."""
+
+    def __init__(self) -> None:
+        self._held: socket.socket | None = None
+
+    def is_this(self) -> bool:
+        """Whether this node is it: the first that asks, until its process ends."""
+        if self._held is None:
+            name = socket.socket(socket.AF_UNIX)  # names of this kind end with their process
+            try:
+                name.bind(f"\0nav_nodes/{os.stat('/proc/self/ns/pid').st_ino}/{os.getppid()}")
+            except OSError:
+                name.close()
+                return False
+            self._held = name
+        return True
+
+
 class MissingData:
     """Records since when each item has been missing. One per node; thread-safe.
 
@@ -44,7 +66,7 @@ class MissingData:
 
     def __init__(self, patience: float = 1.0) -> None:
         """Nothing is logged in the first `patience` s of an absence."""
-        self._patience = patience
+        self._patience, self._speaker = patience, Speaker()
         self._lock = threading.Lock()
         self._absent: dict[str, _Absence] = {}
 
@@ -76,7 +98,7 @@ class MissingData:
         """Report that `what` is there, which ends its absence."""
         with self._lock:
             entry = self._absent.pop(what, None)
-        if entry is not None and entry.said is not None:
+        if entry is not None and entry.said is not None and self._says(entry):
             rospy.loginfo("%s: there again", what)
 
     def _line(self, now: float) -> str:
@@ -93,7 +115,10 @@ class MissingData:
             entry.said = now
         return "; ".join(f"no {what} for {now - entry.since:.0f} s"
                          + (f": {entry.advice}" if entry.advice else "")
-                         for what, entry in due.items())
+                         for what, entry in due.items() if self._says(entry))
+
+    def _says(self, entry: _Absence) -> bool:
+        return not entry.is_root or self._speaker.is_this()
 
     def _known(self, now: float) -> dict[str, _Absence]:
         """What has been missing for longer than its patience, and follows from nothing else."""

@@ -75,13 +75,16 @@ class Senders:
 
 
 def contested(senders: dict[str, list[str]], types: dict[str, str]) -> Iterator[Fault]:
-    """Topics of commands on which several nodes send."""
+    """Several nodes that send commands on the same topics: one fault for all of these."""
+    topics: dict[tuple[str, ...], list[str]] = {}
     for topic, nodes in senders.items():
         if len(nodes) > 1 and types.get(topic) in COMMANDS:
-            yield Fault(("contested", topic, *nodes),
-                        "%s send commands on %s at the same time, so the robot follows now one, "
-                        "now the other: end one of them (Ctrl-C in its terminal, or rosnode kill)",
-                        (", ".join(nodes), topic))
+            topics.setdefault(tuple(nodes), []).append(topic)
+    for nodes, shared in topics.items():
+        yield Fault(("contested", *nodes),
+                    "%s send commands on %s at the same time, so the robot follows now one, now "
+                    "the other: end one of them (Ctrl-C in its terminal, or rosnode kill)",
+                    (", ".join(nodes), _listed(shared)))
 
 
 def unheard(graph: Graph, me: str) -> Iterator[Fault]:
@@ -128,7 +131,11 @@ def _likeness(first: str, second: str) -> float:
 def _nearest(topic: str, others: list[str]) -> str:
     """The names that come nearest, the nearest first."""
     near = sorted(others, key=lambda other: (-_likeness(topic, other), other))
-    return ", ".join(near[:MOST]) + (" ..." if len(near) > MOST else "")
+    return _listed(near)
+
+
+def _listed(names: list[str]) -> str:
+    return ", ".join(names[:MOST]) + (" ..." if len(names) > MOST else "")
 
 
 class Reports:
