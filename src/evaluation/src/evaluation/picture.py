@@ -34,7 +34,7 @@ def bgr(colour: str) -> tuple[int, int, int]:
 
 
 FONT = cv2.FONT_HERSHEY_DUPLEX
-NUMBER_PX = 35  # room for the number of a grid's line
+NUMBER_PX, NUMERAL_PX = 35, 9  # room for the number of a grid's line, and its height
 SHIFT = 4  # cv2 draws between pixels when coordinates are given in sixteenths
 HEAD = np.array([(0.6, 0.0), (-0.4, 0.375), (-0.2, 0.0), (-0.4, -0.375)])  # of an arrow of length 1
 
@@ -73,8 +73,14 @@ class Plan:
                 ends[:, axis] = number * apart
                 self.line(ends, GRID)
                 if number % numbered == 0:
-                    x, y = self.to_px(ends)[0].round().astype(int).tolist()
-                    write_text(self.image, f"{number * apart:g}", (x + 4, y - 4), 9, bgr(FAINT))
+                    self._number(f"{number * apart:g}", *self.to_px(ends)[0].round().astype(int))
+
+    def _number(self, text: str, x: int, y: int) -> None:
+        """Write it right of and above a line's end, px; left or below where the plan ends."""
+        right, above = x + 4 + text_width(text, NUMERAL_PX), y - 4 - NUMERAL_PX
+        left = x + 4 if right <= self.image.shape[1] else 2 * x - right
+        base = y - 4 if above >= 0 else y + 4 + NUMERAL_PX
+        write_text(self.image, text, (int(left), int(base)), NUMERAL_PX, bgr(FAINT))
 
     def line(self, points: Iterable[Sequence[float]], colour: str, thick_px: int = 1,
              closed: bool = False) -> None:
@@ -133,10 +139,21 @@ def write_text(image: np.ndarray, text: str, at_px: tuple[int, int], height_px: 
                colour: tuple = bgr(TEXT)) -> int:
     """Draw text with its baseline's left end at a pixel; returns its width in px."""
     text = text.encode("ascii", "replace").decode()  # cv2 has no other letters
-    thick = 2 if height_px > 24 else 1
+    thick = _thick_px(height_px)
     scale = cv2.getFontScaleFromHeight(FONT, height_px, thick)
     cv2.putText(image, text, at_px, FONT, scale, colour, thick, cv2.LINE_AA)
+    return text_width(text, height_px)
+
+
+def text_width(text: str, height_px: int) -> int:
+    """The width of a text of this height, px."""
+    thick = _thick_px(height_px)
+    scale = cv2.getFontScaleFromHeight(FONT, height_px, thick)
     return cv2.getTextSize(text, FONT, scale, thick)[0][0]
+
+
+def _thick_px(height_px: int) -> int:
+    return 2 if height_px > 24 else 1
 
 
 LEGEND_PX = 28  # height of a row of a legend
