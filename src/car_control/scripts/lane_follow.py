@@ -13,7 +13,7 @@ import rospy
 from car_control.images import picture_of
 from car_control.lane.lane_driver import FOLLOWING, SEARCHING, STOPPED, LaneDriver
 from car_control.lane.line_finding import LaneSettings, find_line
-from car_control.node import Ending, read_settings, start_node
+from car_control.node import Ending, StopNotice, read_settings, start_node
 from geometry_msgs.msg import Twist
 from node_basics.reconfigure import serve_settings
 from node_basics.settings import checked
@@ -31,6 +31,7 @@ class LaneFollow:
         self.lock = threading.Lock()  # callbacks and the timer run in different threads
         self.arrival, self.standing = rospy.get_time(), True
         self.publisher = rospy.Publisher("motor_output", Twist, queue_size=1)
+        self.stop_notice = StopNotice()
         self.picture = rospy.Publisher("~picture", Image, queue_size=1)
         self.images = rospy.Subscriber(
             "camera/image_raw", Image, self.take_image, queue_size=1, buff_size=2**24
@@ -54,7 +55,8 @@ class LaneFollow:
 
     def say(self, state):
         if state == FOLLOWING:
-            rospy.loginfo("following the line")
+            if not self.stop_notice.is_on:  # else it has said that the car stands
+                rospy.loginfo("following the line")
         elif state == SEARCHING:
             side = "left" if self.driver.lateral > 0 else "right"
             rospy.logwarn("line lost: turning to the %s, where it was seen last", side)

@@ -12,7 +12,7 @@ import time
 import rospy
 from ackermann_msgs.msg import AckermannDriveStamped
 from car_control.motor import DriveCommand, Motor, MotorSettings, controller_commands
-from car_control.node import Ending, read_settings, start_node
+from car_control.node import Ending, read_settings, release, start_node
 from geometry_msgs.msg import Twist
 from node_basics.reconfigure import serve_settings
 from node_basics.settings import checked
@@ -36,6 +36,7 @@ class MotorControl:
             name: rospy.Publisher(f"{settings.namespace}/{name}/command", Float64, queue_size=10)
             for name in controller_commands(settings, self.sent)
         }
+        self.stopped = rospy.Publisher("estop_state", Bool, queue_size=1, latch=True)
         callbacks = {
             "motor_output": (Twist, self.take_twist),
             "ackermann_cmd": (AckermannDriveStamped, self.take_ackermann),
@@ -65,7 +66,11 @@ class MotorControl:
     def take_stop(self, msg):
         with self.lock:
             if msg.data != self.motor.emergency:
-                rospy.logwarn("emergency stop" if msg.data else "emergency stop is over")
+                if msg.data:
+                    rospy.logwarn("emergency stop. To release it, type: %s", release())
+                else:
+                    rospy.logwarn("emergency stop is over")
+                self.stopped.publish(msg)
             self.motor.emergency = msg.data
             if msg.data:
                 self.motor.forget()  # no earlier command is resumed afterwards

@@ -19,6 +19,7 @@ from geometry_msgs.msg import Twist
 from node_basics.settings import load_settings
 from sensor_msgs.msg import Image
 from stand_in_camera import StandInCamera
+from std_msgs.msg import Bool
 
 CONFIG = Path(__file__).resolve().parents[1] / "config" / "lane_follow.yaml"
 OVAL = track((4, -1.5, 1.5), (4, 1.5, 1.5), (-4, 1.5, 1.5), (-4, -1.5, 1.5))
@@ -116,6 +117,26 @@ class LaneFollowStory(unittest.TestCase):
         seen = self.camera.seen[1].tobytes()
         wait_until(lambda: rospy.wait_for_message("/show/windows/SHOW", Image, LIMIT).data == seen,
                    "the camera's picture")
+
+    def test_an_emergency_stop_is_said_with_what_releases_it(self):
+        stop = rospy.Publisher("held/estop_state", Bool, queue_size=1, latch=True)
+        stop.publish(True)
+        node = subprocess.Popen(
+            ["rosrun", "car_control", "lane_follow.py", "__ns:=held", "__name:=follow",
+             "camera/image_raw:=/camera/image_raw"], text=True, stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT)
+        try:
+            lines = (line for line in node.stdout if "emergency stop" in line)
+            line = next(lines)
+            self.assertIn("the emergency stop is on, and the car stands", line)
+            self.assertIn("rostopic pub -1 /held/estop std_msgs/Bool false", line)
+            stop.publish(False)
+            self.assertIn("the emergency stop is over", next(lines))
+        finally:
+            node.kill()
+            node.wait()
+            node.stdout.close()
+            stop.unregister()
 
     def test_ctrl_c_leaves_the_car_standing(self):
         other = Commands("other_output")

@@ -129,6 +129,9 @@ class MotorControlStory(unittest.TestCase):
         self.car.wait_for_speed(2.0, "driving")
         self.stops.publish(True)
         wait_until(self.car.stand, "standing")
+        self.assertTrue(rospy.wait_for_message("estop_state", Bool, LIMIT).data)  # for later nodes
+        release = "To release it, type: rostopic pub -1 /estop std_msgs/Bool false"
+        wait_until(lambda: any(release in line for line in self.said), release)
         self.car.told.clear()
         wait_until(lambda: len(self.car.told) > 120, "some commands more")
         self.assertEqual({value for _when, _name, value in self.car.told}, {0.0})

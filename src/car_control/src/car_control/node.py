@@ -13,6 +13,7 @@ import rospy
 from node_basics.ending import at_signals
 from node_basics.settings import Settings, SettingsError, load_settings
 from rospy.client import load_command_line_node_params
+from std_msgs.msg import Bool
 
 PATIENCE = 3.0  # s, wall, for the last message and for unregistering from the master
 
@@ -44,6 +45,30 @@ def read_settings(kind: type[Settings], file_name: str, section: str | None = No
     except SettingsError as error:
         rospy.logfatal("%s", error)
         sys.exit(1)
+
+
+class StopNotice:
+    """Says in a node that drives when motor_control's emergency stop is on, and how to release it.
+
+    motor_control keeps the last state on `estop_state`, for nodes that start later.
+    """
+
+    def __init__(self) -> None:
+        self.is_on = False
+        rospy.Subscriber("estop_state", Bool, self._take, queue_size=1)
+
+    def _take(self, state: Bool) -> None:
+        if state.data and not self.is_on:
+            rospy.logwarn("the emergency stop is on, and the car stands. To release it, type: %s",
+                          release())
+        elif self.is_on and not state.data:
+            rospy.loginfo("the emergency stop is over")
+        self.is_on = state.data
+
+
+def release() -> str:
+    """The command that releases the emergency stop."""
+    return f"rostopic pub -1 {rospy.resolve_name('estop')} std_msgs/Bool false"
 
 
 class Ending:
