@@ -276,7 +276,7 @@ def _shadow_places(prepared: _Prepared, nodes: list[Node], seen: Visibility,
     if prepared.shadows is None:
         return {}
     places = prepared.shadows.seen_on(nodes, prepared.outlines.boxes(nodes),
-                                      np.concatenate(seen.parts), clip_world)
+                                      np.fromiter(itertools.chain(*seen.parts), bool), clip_world)
     if places:
         prepared.shadows.use()
     return places
