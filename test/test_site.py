@@ -192,6 +192,8 @@ def test_each_lesson_has_a_text_for_ros_2_or_a_line_that_takes_its_place(site):
     assert len(lessons()) > 85 and lessons().keys() <= shown.keys() | instead.keys()
     assert RULES["files"].keys() <= lessons().keys()
     assert packages() == {name.partition("/")[0] for name in shown.keys() | instead.keys()}
+    assert {path.name.split(".")[0] for path in TOOL.glob("twins/*/*")} <= {
+        path.stem for path in (ROOT / "src").rglob("*")}  # of no lesson that has gone
     for language in ("en", "zh"):
         pages = {name: page(site, f"{language}/docs/ros2/{name}.html") for name in packages()}
         for name, text in shown.items():

@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 import importlib
 import inspect
+import operator
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -31,7 +32,7 @@ SPIN = "threading.Thread(target=rclpy.spin, args=[node], daemon=True).start()"
 LONG = r"^(?=.{101})( *)(.*?(?:create_\w+|info|warning|error)\()(.*)$"
 
 
-def changed(old: str, new: str, text: str, flags: int) -> str:
+def substituted(old: str, new: str, text: str, flags: int) -> str:
     """With one place or more changed; ValueError if there is none."""
     text, count = re.subn(old, new, text, flags=flags)
     if not count:
@@ -52,6 +53,23 @@ def read_rules(path: Path) -> dict:
 RULES = read_rules(HERE / "ros2.yaml")
 
 
+def with_imports(text: str) -> str:
+    """A program with what it needs in place of `import rospy`, and nothing that it does not."""
+    lines = [line for name, line in RULES["imports"].items()
+             if re.search(rf"(?<!\w){name}", text) and f"{line}\n" not in text]
+    first = [f"{line}\n" for line in lines if line in ("import atexit", "import threading")]
+    if first:  # before all others, which are Python's own or begin with rospy
+        begin = re.search("^(import|from (?!__future__))", text, re.MULTILINE).start()
+        apart = "import rospy\n" in text[begin:].split("\n\n")[0]
+        text = f"{text[:begin]}{''.join(first)}{chr(10) * apart}{text[begin:]}"
+    text = text.replace("import rospy\n", "".join(
+        f"{line}\n" for line in lines if f"{line}\n" not in first), 1)
+    for name in re.findall(r"^import (\w+)$", text, re.MULTILINE):
+        if not re.search(rf"\b{name}\.", text):  # only what was left out has used it
+            text = text.replace(f"import {name}\n", "")
+    return text
+
+
 class Program:
     """A program, or a part of one, whose node is called `node`."""
 
@@ -59,7 +77,7 @@ class Program:
         """`name`: PACKAGE/FILE, if the rules have changes for this file alone."""
         rules = RULES["files"].get(name, {})
         for old, new in rules.get("change", {}).items():
-            source = changed(old, new, source, re.MULTILINE | re.DOTALL)
+            source = substituted(old, new, source, re.MULTILINE | re.DOTALL)
         for old, new in RULES["before"].items():
             source = re.sub(old, new, source, flags=re.MULTILINE)
         node = rules.get("node", "node")
@@ -96,19 +114,7 @@ class Program:
         for old, new in RULES["texts"].items():
             text = re.sub(old.replace("NODE", self.node), new.replace("NODE", self.node), text)
         text = re.sub(LONG, r"\1\2\n\1    \3", text, flags=re.MULTILINE)
-        lines = [line for name, line in RULES["imports"].items()
-                 if re.search(rf"(?<!\w){name}", text) and f"{line}\n" not in text]
-        first = [line for line in lines if line in ("import atexit", "import threading")]
-        if first:  # before all others, which are those of Python itself or of packages
-            begin = re.search("^(import|from (?!__future__)) ?", text, re.MULTILINE).start()
-            own = "import rospy\n" in text[begin:].split("\n\n")[0]
-            text = "".join([text[:begin], *(f"{line}\n" for line in first), "\n" * own,
-                            text[begin:]])
-        text = text.replace("import rospy\n", "".join(
-            f"{line}\n" for line in lines if line not in first), 1)
-        for name in re.findall(r"^import (\w+)$", text, re.MULTILINE):
-            if not re.search(rf"\b{name}\.", text):  # only what was left out has used it
-                text = text.replace(f"import {name}\n", "")
+        text = with_imports(text)
         if left := re.search(r".*\b(rospy|actionlib|rosgraph|rosbag)\b[.].*", text):
             raise ValueError(f"ros2.yaml: no rule for: {left[0].strip()}")
         return text
@@ -171,7 +177,8 @@ class Program:
         if name == "rospy.init_node":
             return self.start(node)
         if name in RULES["calls"]:
-            given = inspect.signature(eval(name, {"rospy": rospy})).bind(
+            own = operator.attrgetter(name.removeprefix("rospy."))(rospy)
+            given = inspect.signature(own).bind(
                 *map(self.code, node.args),
                 **{each.arg: self.code(each.value) for each in node.keywords}).arguments
             return self.filled(RULES["calls"][name], given)
@@ -225,10 +232,10 @@ class Program:
                  f"node = rclpy.create_node({self.code(call.args[0])})"]
         if self.threads:
             lines.append(SPIN)
-        inside = [each for each in self.tree.body if isinstance(each, ast.FunctionDef)
-                  and self.place(each) < self.place(call) < self.place(each)[1:]]
-        others = [each for each in self.tree.body if each not in inside]
-        if inside and any(re.search(r"rospy\.(?!ROSInter|Duration)|\bnode\b", ast.unparse(each))
-                          for each in others):
+        (place,) = [each for each in self.tree.body
+                    if any(part is call for part in ast.walk(each))]
+        if isinstance(place, ast.FunctionDef) and any(
+                re.search(r"rospy\.(?!ROSInter|Duration)|\bnode\b", ast.unparse(each))
+                for each in self.tree.body if each is not place):
             lines.insert(0, "global node")
         return f"\n{' ' * call.col_offset}".join(lines)
