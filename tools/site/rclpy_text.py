@@ -185,9 +185,9 @@ class Program:
         if name in self.messages and (node.args or PART.fullmatch(name)):
             return self.message(name, node)
         kind = self.topics.get(name.removesuffix(".publish"))
-        if kind and name.endswith(".publish") and not ast.unparse(node).startswith(
-                f"{name}({kind}(") and (len(node.args) != 1
-                                        or self.messages[kind].__slots__ == ["data"]):
+        if kind and name.endswith(".publish") and not re.match(
+                rf"{re.escape(name)}\((msg\)|{kind}\()", ast.unparse(node)) and (
+                len(node.args) != 1 or self.messages[kind].__slots__ == ["data"]):
             return f"{self.code(node.func)}({self.message(kind, node)})"
         return None
 

@@ -14,7 +14,9 @@ import yaml
 from ament_index_python.packages import get_package_share_directory
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
 from rclpy.executors import ExternalShutdownException
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
+from std_msgs.msg import Bool
 
 
 def start_node(name):
@@ -62,6 +64,29 @@ def serve_settings(node, settings, apply):
         return SetParametersResult(successful=True)
 
     node.add_on_set_parameters_callback(change)
+
+
+class StopNotice:
+    """Says when motor_control's emergency stop is on, and how to release it.  急停提示"""
+
+    def __init__(self, node):
+        self.node, self.is_on = node, False
+        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        node.create_subscription(Bool, "estop_state", self.take, kept)
+
+    def take(self, state):
+        if state.data and not self.is_on:
+            self.node.get_logger().warning("the emergency stop is on, and the car stands. "
+                                           f"To release it, type: {release(self.node)}")
+        elif self.is_on and not state.data:
+            self.node.get_logger().info("the emergency stop is over")
+        self.is_on = state.data
+
+
+def release(node):
+    """The command that releases the emergency stop.  解除急停的命令"""
+    topic = node.resolve_topic_name("estop")
+    return f"ros2 topic pub --once {topic} std_msgs/msg/Bool '{{data: false}}'"
 
 
 class Ending:
