@@ -136,11 +136,11 @@ OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its pla
             "{0}: <{1}> is included, but CMakeLists.txt does not name {2} in find_package(catkin "
             "... COMPONENTS ...): found all the same")
 # Values of sentences, which may be names elsewhere.
-OF_VALUES = ("none", "unknown", "a number", "this user", "parent link", "child link", "link",
-             "joint", "model", "sensor", "function call", "function definition", "class definition",
-             "literal", "expression", "attribute", "simulated clock /clock", "the disk", "driving",
-             "scene", "tracker", "follower", "mission", "method", "avoider", "reached", "contact",
-             "late")
+OF_VALUES = ("none", "unknown", "a number", "a text", "this user", "parent link", "child link",
+             "link", "joint", "model", "sensor", "function call", "function definition",
+             "class definition", "literal", "expression", "attribute", "simulated clock /clock",
+             "the disk", "driving", "scene", "tracker", "follower", "mission", "method", "avoider",
+             "reached", "contact", "late")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "hint", "ignored",
             "works",  # its words
             "world {0} ({1} models)", "model {0} ({1} links, {2} joints)", "the text",

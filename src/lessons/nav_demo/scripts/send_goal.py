@@ -99,7 +99,7 @@ def refuse_at_once(x, y):
     grid = newest_map()
     fault = fault_on_map(grid, x, y) if grid else ""
     if fault:
-        sys.exit(f"{fault}; the goal was not sent")
+        sys.exit(f"the goal was not sent: {fault}")
 
 
 def tell_outcome(client, x, y):

@@ -52,7 +52,7 @@ def test_where_no_car_can_be_no_goal_is_sent(script, grid, monkeypatch, place, w
     monkeypatch.setattr(script, "newest_map", lambda: grid)
     with pytest.raises(SystemExit) as end:
         script.refuse_at_once(*place)
-    assert end.value.code == f"{why}; the goal was not sent"
+    assert end.value.code == f"the goal was not sent: {why}"
 
 
 @pytest.mark.parametrize("place", [(-0.9, -1.9), (0.9, -1.1)])  # unknown, free
