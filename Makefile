@@ -1,5 +1,5 @@
 # Every command is a script in scripts/; run a script itself to get its own exit code.
-verbs = setup course race viewer drive lane track avoid navigate autorace mark site shell deps build report clean clean-root help \
+verbs = setup course race replay viewer drive lane track avoid navigate autorace mark site shell deps build report clean clean-root help \
   test lint race-trials track-trials lane-trials navigation-trials localisation-trials bench-lanes bench fuzz chaos soak mutants check-releases deb image wheels
 .PHONY: $(verbs)
 .DEFAULT_GOAL = help
@@ -46,6 +46,10 @@ race: ## drive the racetrack by camera, and report [LAPS= DURATION= FAST= CAMERA
 	  $(if $(DURATION),--duration "$$DURATION") $(if $(FOLLOWER),--follower "$$FOLLOWER") \
 	  $(if $(filter-out 0 no false,$(FAST)),--fast) $(if $(CAMERA),--camera "$$CAMERA") \
 	  $(if $(SEED),--seed "$$SEED")
+
+replay: ## go back to an image of a run by FAST=1, and drive on from there [RUN=out/course] [AT=lost: or lap, contact, largest, 23.4, image:700, end] [CONTROL=1] [PORT=8080]
+	@scripts/replay.sh $(if $(RUN),--run "$$RUN") $(if $(AT),--at "$$AT") \
+	  $(if $(filter-out 0 no false,$(CONTROL)),--control) $(if $(PORT),--port "$$PORT")
 
 viewer: ## start the line course, and show it in the browser [CONTROL=1] [RVIZ=FILE] [PORT=8080] [ADDRESS=0.0.0.0]
 	@exec scripts/viewer.sh $(if $(filter-out 0 no false,$(CONTROL)),control:=true) \

@@ -5,6 +5,7 @@
 #
 #   course               drives the line course (--fast: in lockstep with the follower): all laps were completed, or with a
 #                        duration and no laps it drove that long
+#   replay               goes back to an image of a run: the state there is the run's
 #   navigate             maps a house and drives to goals: all reached without contact, map and pose within their limits
 #   track                follows the red cylinder: it was reached and its distance kept
 #   avoid                drives by laser through halls with columns: all goals reached without contact
@@ -32,6 +33,9 @@ for at in "${!words[@]}"; do
     "course --camera")
       [[ $value =~ ^[1-9][0-9]{0,4}x[1-9][0-9]{0,4}$ ]] ||
         fail $"--camera (CAMERA=) must be WIDTHxHEIGHT in px, as 640x480; got '$value'" ;;
+    "replay --run")
+      [ -e "$value" ] || [ -e "$value.run.log.gz" ] ||
+        fail $"no run at $value (RUN=): give the folder of its results, as out/course" ;;
     "track --scene")
       known "$value" $"no scene '$value' (SCENE=); there are:" $(quoted_words src/lessons/ai_robot_tracking/src/ai_robot_tracking/scenes/scene.py "KINDS = (" ")") ;;
     "track --tracker") known "$value" $"no tracker '$value' (TRACKER=); there are:" visual_tracker.py visual_tracker_pid.py ;;

@@ -18,6 +18,7 @@ from learning_laser import hall
 from evaluation.command_line import Parser, one_of
 from evaluation.picture import CAR, FAINT, Plan, lap_colour, write_tiles
 from evaluation.report import cell, mean, table
+from evaluation.run_log import RUN_LOG, begin_run_log
 from evaluation.run_page import RECORDING, begin_recording, write_run_page
 from evaluation.trial import Case, Trial
 from run_session.failure import RunError
@@ -119,9 +120,11 @@ def bring_up(launched: Launched, world: Path, seed: int, avoider: str, state_log
     """Start all, wait until all nodes are connected, and unpause."""
     launched.start_roscore()
     begin_recording(launched.master_uri, world.with_suffix(f".{RECORDING}"))
-    launched.start("roslaunch", [
-        "roslaunch", "evaluation", "avoid.launch", world_argument(world), f"seed:={seed}",
-        f"avoider:={avoider}", f"state_log:={state_log}", "paused:=true", "real_time_factor:=0"])
+    words = ("evaluation", "avoid.launch", world_argument(world), f"seed:={seed}",
+             f"avoider:={avoider}", f"state_log:={state_log}", "paused:=true",
+             "real_time_factor:=0")
+    begin_run_log(launched.master_uri, world.with_suffix(f".{RUN_LOG}"), words, avoider, *TOPICS)
+    launched.start("roslaunch", ["roslaunch", *words])
     launched.wait_for(f"model {WAFFLE}", lambda: WAFFLE in models(), START_LIMIT)
     launched.wait_for(f"who reads /scan ({avoider})", lambda: _connected(launched.master_uri),
                       START_LIMIT)

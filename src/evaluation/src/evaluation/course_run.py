@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import re
 from collections.abc import Sequence
@@ -15,6 +16,7 @@ from racecar_description.track.closed_line import build_track
 from racecar_description.track.track_file import TrackFile, load_track_file
 from sim_viewer.replay_page import Curve
 
+from bullet_sim.formats.run_log import Mark
 from evaluation.command_line import LARGEST_SEED, Parser, number, one_of
 from evaluation.film import FAST_FILM_PERIOD, FILM_PERIOD, VIEW_PX, CameraFilm, side_by_side
 from evaluation.lap import LapScorer, Verdict
@@ -31,6 +33,7 @@ from evaluation.picture import (
     write_png,
 )
 from evaluation.report import cell, table, write_json
+from evaluation.run_log import RUN_LOG
 from evaluation.run_page import RUN_PAGE
 from run_session.course_file import CourseFile, drivers, load_course
 from run_session.failure import RunError
@@ -172,6 +175,19 @@ def mark_line(view: np.ndarray, band: float) -> np.ndarray:
 MOST_SECONDS = 999_999_999
 
 
+def marks_of(drive: LapScorer) -> list[Mark]:
+    """Each lap's end, where the car was farthest beside the line, and where it lost it."""
+    times = [sample.time for sample in drive.samples]
+    found = [Mark("lap", times[at], str(lap)) for at, (before, lap) in enumerate(
+        itertools.pairwise(drive.lap_numbers), 1) if lap > before]
+    if drive.laterals:
+        farthest = max(range(len(times)), key=lambda each: abs(drive.laterals[each]))
+        found.append(Mark("largest", times[farthest], f"{drive.laterals[farthest]:+.3f} m"))
+    if drive.verdict is Verdict.LEFT:
+        found.append(Mark("lost", times[-1], drive.why))
+    return found
+
+
 class CourseRun(CarDrive):
     """One run of a course: what is observed and what was found."""
 
@@ -179,7 +195,7 @@ class CourseRun(CarDrive):
     does = "Drive a follower round the course without a screen, score it, write a report."
     ends = "0 laps closed, or --duration without --laps was driven, 1 left the course or stalled"
     usual_out = "out/ and the course's name"
-    writes = ("path.png", "run.mp4", RUN_PAGE, "report.json")
+    writes = ("path.png", "run.mp4", RUN_PAGE, RUN_LOG, "report.json")
 
     @classmethod
     def add_options(cls, parser: Parser) -> None:
@@ -269,6 +285,9 @@ class CourseRun(CarDrive):
             "fast": self.options.fast, "seed": self.options.seed,
             "camera_width_px": width, "camera_height_px": height,
             **({"sensor_sha256": self.sensor_sums} if self.sensor_sums else {})}
+
+    def marks(self) -> list[Mark]:
+        return marks_of(self.drive)
 
     def curves(self) -> list[Curve]:
         times = [sample.time for sample in self.drive.samples]

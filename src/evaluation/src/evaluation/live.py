@@ -15,6 +15,7 @@ from node_basics.ending import drop_unread_output, interruptible
 from sim_viewer.replay_page import Curve
 from terminal_language import translated
 
+from bullet_sim.formats.run_log import Mark
 from evaluation.command_line import (
     NOT_PASSED,
     PASSED,
@@ -25,6 +26,7 @@ from evaluation.command_line import (
 )
 from evaluation.film import FilmFile
 from evaluation.lap import LapScorer, Sample, fingerprint
+from evaluation.run_log import RUN_LOG, add_marks, begin_run_log
 from evaluation.run_page import RECORDING, RUN_PAGE, begin_recording, write_run_page
 from run_session.course_file import CourseFile
 from run_session.failure import RunError
@@ -125,6 +127,10 @@ class LiveDrive(ABC):
     def write(self, report: dict) -> list[str]:
         """Write pictures and report.json; returns the summary lines."""
 
+    def marks(self) -> list[Mark]:
+        """What is worth going back to, for RUN_LOG."""
+        return []
+
     def curves(self) -> list[Curve]:
         """What RUN_PAGE shows besides the speed."""
         return []
@@ -195,6 +201,7 @@ def _report(drive: LiveDrive, outcome: Outcome) -> dict | None:
     found = drive.figures(outcome, log)
     if found is None:
         return None
+    add_marks(drive.out / RUN_LOG, drive.marks())
     found |= {"film": None, "versions": versions(Path(__file__).parent, log)}
     drive.summary = "\n".join(drive.write(found))
     drive.progress.say(f"\n{drive.summary}")
@@ -271,6 +278,10 @@ class CarDrive(LiveDrive):
     def bring_up(self, launched: Launched) -> None:
         """Start everything and wait until the car is there."""
         words = self.launch_words()
+        if self.options.fast:
+            course = self.course
+            begin_run_log(launched.master_uri, self.out / RUN_LOG, words, self.driver,
+                          course.camera, course.commands, course.controllers)
         listened = self.course.sensors if self.fingerprints else ()
         self._observer = Observer(launched.master_uri, self.course.robot_name(words[2:]),
                                   self.course, lockstep=self.options.fast, listened=listened)

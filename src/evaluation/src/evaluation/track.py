@@ -40,6 +40,7 @@ from evaluation.picture import (
     write_text,
 )
 from evaluation.report import write_json
+from evaluation.run_log import RUN_LOG
 from evaluation.run_page import RUN_PAGE
 from evaluation.track_score import BAND, SETTLED, Task, TrackScorer
 from run_session.course_file import CourseFile
@@ -219,7 +220,7 @@ class TrackRun(CarDrive):
     does = "Follow the red cylinder without a screen, score it, write a report."
     ends = "0 all that was asked for was seen, 1 not so"
     usual_out = COURSE.out
-    writes = ("path.png", "run.mp4", RUN_PAGE, "report.json")
+    writes = ("path.png", "run.mp4", RUN_PAGE, RUN_LOG, "report.json")
 
     @classmethod
     def add_options(cls, parser: Parser) -> None:

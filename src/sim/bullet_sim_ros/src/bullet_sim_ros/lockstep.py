@@ -23,6 +23,7 @@ class Lockstep:
         self._sensor = rospy.resolve_name(sensor) if sensor else ""
         self.topics = frozenset(rospy.resolve_name(topic) for topic in split(topics))
         self.unanswered = 0  # frames after which the world went on without an answer
+        self.each_question: list[Callable[[], None]] = []  # called in the loop, before it waits
         self._timeout = timeout  # s, wall
         self._mailbox = mailbox
         self._expected: set[str] = set()  # topics whose message is still to come
@@ -77,6 +78,8 @@ class Lockstep:
 
     def wait(self, stopped: Callable[[], bool]) -> None:
         """Run the mailbox's calls until the answer is there or the time-out is over."""
+        if self._expected:
+            self.note()
         until = time.monotonic() + self._timeout
         while self._expected and not stopped():
             left = until - time.monotonic()
@@ -86,6 +89,11 @@ class Lockstep:
                 self.cancel()
                 return
             self._mailbox.run_pending(min(left, LOOK))
+
+    def note(self) -> None:
+        """In the loop: an image, or a sensor's message, is to be answered now."""
+        for observe in self.each_question:
+            observe()
 
     def _warn(self) -> None:
         """Warn, limited by wall time: rospy's throttle uses simulated time, which hardly passes."""

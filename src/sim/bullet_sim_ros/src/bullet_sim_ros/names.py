@@ -47,6 +47,11 @@ LOCKSTEP_TIMEOUT = "~lockstep_timeout"
 LOCKSTEP_SENSOR = "~lockstep_sensor"
 STATE_LOG = "~state_log"
 RECORDING = "~recording"
+RUN_LOG = "~run_log"
+RUN_LOG_OF = "~run_log_of"  # JSON text: what the log's header says of the run
+REPLAY = "~replay"
+REPLAY_TO = "~replay_to"  # number of the image that the service goes to
+GO_TO_IMAGE = "~go_to_image"
 PROFILE = "~profile"
 RUNNING = "~running"  # set by the node: {world: its file's name, since: s, wall}
 

@@ -18,6 +18,7 @@ from rosgraph.names import is_legal_name
 from bullet_sim.errors import SimulationError
 from bullet_sim.formats.loading import load_world
 from bullet_sim.formats.resources import Resources
+from bullet_sim.formats.run_log import RunLogError
 from bullet_sim.physics.parameter_bounds import possible_physics
 from bullet_sim.rendering.renderer import NoRenderer
 from bullet_sim.world import World
@@ -29,7 +30,9 @@ from bullet_sim_ros.package_paths import open_resources, unreadable_world, why_u
 from bullet_sim_ros.params import NodeParameters, read_node_parameters
 from bullet_sim_ros.plugins import register_plugins
 from bullet_sim_ros.recording import Recording
+from bullet_sim_ros.replay import Replay
 from bullet_sim_ros.rospy_patches import keep_every_publisher, send_promptly
+from bullet_sim_ros.run_log import RunLog
 from bullet_sim_ros.services import offer_services
 from bullet_sim_ros.shutdown import end_before_topics, end_by_signals, shut_down
 from bullet_sim_ros.simulation import Simulation
@@ -155,12 +158,17 @@ def start(options: argparse.Namespace) -> Simulation | None:
     end_by_signals(simulation.stop)  # before its topics and services are visible
     open_network(simulation, parameters)
     for kind, name, file in ((StateLog, names.STATE_LOG, parameters.state_log),
-                             (Recording, names.RECORDING, parameters.recording)):
+                             (Recording, names.RECORDING, parameters.recording),
+                             (RunLog, names.RUN_LOG, parameters.run_log),
+                             (Replay, names.REPLAY, parameters.replay)):
         try:
             if file:
                 kind(simulation, Path(file))
         except OSError as error:
             rospy.logfatal("parameter %s: %s: %s", rospy.resolve_name(name), file, error.strerror)
+            return None
+        except RunLogError as error:
+            rospy.logfatal("parameter %s: %s", rospy.resolve_name(name), error)
             return None
     return simulation
 

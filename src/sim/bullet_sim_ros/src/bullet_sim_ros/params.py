@@ -23,6 +23,8 @@ class NodeParameters:
     lockstep_sensor: str = ""  # topic after whose messages to wait, instead of camera frames
     state_log: str = ""  # file for true poses, contacts and calls; empty: none
     recording: str = ""  # file for all links' poses and the scene; empty: none
+    run_log: str = ""  # file for all that acts on the world, to repeat the run; empty: none
+    replay: str = ""  # such a file, which is to be repeated; empty: none
     profile: bool = False  # print what each stage of the work costs
 
 
@@ -40,6 +42,8 @@ def read_node_parameters() -> NodeParameters:
         str(rospy.get_param(names.LOCKSTEP_SENSOR, defaults.lockstep_sensor)).strip(),
         str(rospy.get_param(names.STATE_LOG, defaults.state_log)),
         str(rospy.get_param(names.RECORDING, defaults.recording)),
+        str(rospy.get_param(names.RUN_LOG, defaults.run_log)),
+        str(rospy.get_param(names.REPLAY, defaults.replay)),
         bool(rospy.get_param(names.PROFILE, defaults.profile)),
     )
 

@@ -8,6 +8,7 @@ from typing import Protocol
 import rospy
 from node_basics.reconfigure import Entry, EntryServer
 
+from bullet_sim_ros.inputs import Input
 from bullet_sim_ros.plugin_host import PluginContext
 
 log = logging.getLogger("bullet_sim.plugins")
@@ -52,7 +53,7 @@ def offer_changes(context: PluginContext, namespace: str, values: Mapping[str, V
     def changed(new: dict[str, float | bool]) -> None:
         """Called in a ROS thread; the first time at once."""
         if begun:
-            context.host.mailbox.post(lambda: change(new))
+            context.host.mailbox.post(lambda: change(new), Input(namespace, None))
         begun.append(True)
 
     offer_values(context, namespace, values, changed)

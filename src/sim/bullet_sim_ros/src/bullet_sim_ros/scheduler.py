@@ -73,6 +73,7 @@ class Scheduler:
         self._world = world
         self._tasks: list[PeriodicTask] = []
         self._longest = LONGEST
+        self.heard = True  # whether tasks run that only listeners want: they leave the world as is
 
     def set_pace(self, factor: float) -> None:
         """Set the real-time factor aimed at; 0: as fast as possible."""
@@ -118,7 +119,7 @@ class Scheduler:
         for task in self._tasks:
             if task.next_tick <= now:
                 task.next_tick = task.tick_rate.next_tick(now)
-            if task.next_tick < first and task.wanted():
+            if task.next_tick < first and self._wanted(task):
                 first = task.next_tick
         return first
 
@@ -126,6 +127,18 @@ class Scheduler:
         """Run the tasks that are due at this tick."""
         now = self._world.tick
         for task in self._tasks:
-            if task.next_tick == now and task.wanted():
+            if task.next_tick == now and self._wanted(task):
                 task.count += 1
                 task.action()
+
+    def for_listeners(self) -> list[PeriodicTask]:
+        """The tasks that only listeners want."""
+        return [task for task in self._tasks if task.wanted is not always]
+
+    def is_due(self, task: PeriodicTask) -> bool:
+        """Whether a task is due at this tick, also if nobody listened."""
+        now = self._world.tick
+        return task.tick_rate.next_tick(now - 1) == now
+
+    def _wanted(self, task: PeriodicTask) -> bool:
+        return task.wanted is always or (self.heard and task.wanted())

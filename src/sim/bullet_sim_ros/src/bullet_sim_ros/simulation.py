@@ -40,13 +40,14 @@ class Simulation:
         self._host = PluginHost(
             world, self.mailbox, self.scheduler, self._drawing, self.lockstep
         )
-        self.senders = self._host.senders
+        self.senders, self.inputs = self._host.senders, self._host.inputs
         self._plugins: dict[str, list[PluginContext]] = {}
         world.each_removal.append(self._close_plugins)
         self._clock = rospy.Publisher(names.CLOCK, Clock, queue_size=10)
         self.scheduler.add(parameters.pub_clock_frequency, self.publish_clock)
         self.set_pace()
         self.each_turn: list[Callable[[], None]] = []  # called by the loop, paused or not
+        self.at_close: list[Callable[[], None]] = []  # called when the loop has ended
         self.state_calls: Counter[str] = Counter()  # get_model_state calls by model: header.seq
         for model in world.models.values():
             self._load_plugins(model)
@@ -131,6 +132,8 @@ class Simulation:
     def close(self) -> None:
         """Refuse pending calls; release renderer and engine."""
         self.mailbox.close()
+        for end in self.at_close:
+            end()
         self._drawing.close()
         self.real_time_factor.close()
         self.world.close()

@@ -13,6 +13,7 @@ from bullet_sim.pose import Pose
 from bullet_sim.rendering.scene_text import scene_to_text
 from bullet_sim.world import World
 from bullet_sim_ros import convert, names
+from bullet_sim_ros.inputs import Input
 from bullet_sim_ros.services.links import set_link_state
 from bullet_sim_ros.services.states import set_model_state
 from bullet_sim_ros.simulation import Simulation
@@ -75,10 +76,13 @@ class StateTopics:
             except SimulationError as error:
                 rospy.logerr("topic %s: %s", rospy.resolve_name(topic), error)
 
+        resolved = rospy.resolve_name(topic)
+        number = self._simulation.inputs.add(resolved, kind, lambda msg: lambda: take(msg))
+
         def receive(msg) -> None:
             mailbox = self._simulation.mailbox
-            mailbox.announce(rospy.resolve_name(topic), msg)
-            mailbox.post(lambda: take(msg))
+            mailbox.announce(resolved, msg)
+            mailbox.post(lambda: take(msg), Input(resolved, number, msg))
 
         rospy.Subscriber(topic, kind, receive, queue_size=10)
 

@@ -11,6 +11,7 @@ from bullet_sim.errors import PluginError
 from bullet_sim.formats.urdf.facts import RobotFacts
 from bullet_sim_ros import names, params
 from bullet_sim_ros.control.actions import LoopActionServer
+from bullet_sim_ros.inputs import Input
 from bullet_sim_ros.plugin_host import PluginContext
 
 
@@ -88,9 +89,12 @@ class ControllerContext:
     def action(self, name: str, spec: type, on_goal: Callable,
                on_cancel: Callable) -> LoopActionServer:
         """An action server; `on_goal(goal_handle)` and `on_cancel(goal_handle)` run in the loop."""
-        server = LoopActionServer(names.join(self.namespace, name), spec,
-                                  lambda handle: self.mailbox.post(lambda: on_goal(handle)),
-                                  lambda handle: self.mailbox.post(lambda: on_cancel(handle)),
+        source = Input(names.join(self.namespace, name), None)
+        server = LoopActionServer(source.name, spec,
+                                  lambda handle: self.mailbox.post(
+                                      lambda: on_goal(handle), source),
+                                  lambda handle: self.mailbox.post(
+                                      lambda: on_cancel(handle), source),
                                   auto_start=False)
         self.on_close(server.stop)
         self.every(server.STATUS_RATE, server.publish_status)

@@ -9,6 +9,7 @@ from rospy import Duration
 from bullet_sim.control.pid import Pid, PidGains
 from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
+from bullet_sim_ros.inputs import Input
 from bullet_sim_ros.reconfigure_server import Owner, Value, offer_values
 
 RANGES = {"p": (-1e5, 1e5, "Proportional gain"), "i": (-1e5, 1e5, "Integral gain"),
@@ -31,7 +32,7 @@ def open_pid(context: ControllerContext, group: str = "pid") -> Pid:
     def change(gains: PidGains) -> None:
         def set_gains() -> None:
             pid.gains = gains
-        context.mailbox.post(set_gains)
+        context.mailbox.post(set_gains, Input(context.namespace, None))
 
     offer_gains(context, context.parameters.where(group), pid.gains, change)
     return pid

@@ -19,6 +19,7 @@ from bullet_sim.world import World
 from bullet_sim_ros import convert
 from bullet_sim_ros.drawing import DrawingThread
 from bullet_sim_ros.errors import format_error
+from bullet_sim_ros.inputs import Input, Inputs
 from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
 from bullet_sim_ros.scheduler import PeriodicTask, Scheduler, always
@@ -36,6 +37,7 @@ class PluginHost:
         self.drawing = drawing
         self.lockstep = lockstep
         self.senders = Senders()
+        self.inputs = Inputs()
         self.warned: set[tuple[str, str]] = set()  # unknown plugins: model, file name
         self._broadcaster: tf2_ros.TransformBroadcaster | None = None
 
@@ -208,12 +210,14 @@ class PluginContext:
         lockstep = self.host.lockstep
         resolved = rospy.resolve_name(_legal(topic))
         answers = resolved in lockstep.topics
+        number = self.host.inputs.add(resolved, kind, take)
+        self._closers.append(lambda: self.host.inputs.remove(resolved, number))
 
         def receive(message) -> None:
             self.host.senders.note(resolved, message)
             function = take(message)
             if function is not None:
-                self.host.mailbox.post(function)
+                self.host.mailbox.post(function, Input(resolved, number, message))
             if answers:
                 lockstep.receive(resolved, self)
 

@@ -6,12 +6,16 @@ from typing import Any
 import rospy
 
 from bullet_sim.errors import SimulationError
+from bullet_sim_ros import names
 from bullet_sim_ros.errors import format_error
+from bullet_sim_ros.inputs import Input
 from bullet_sim_ros.mailbox import Closed
 from bullet_sim_ros.simulation import Simulation
 
 Handler = Callable[[Simulation, Any, Any], None]
 _registry: list[tuple[str, type, Handler]] = []
+# Time passes or not: what the world is at a step is the same.
+HARMLESS = (names.PAUSE_PHYSICS, names.UNPAUSE_PHYSICS, names.STEP_PHYSICS)
 
 
 class CallFails(Exception):
@@ -35,12 +39,18 @@ def offer_registered(simulation: Simulation) -> None:
 
 def _offer(simulation: Simulation, name: str, kind: type, handler: Handler) -> None:
     mailbox, made = simulation.mailbox, kind._response_class
+    resolved = rospy.resolve_name(name)
+    acts = name not in HARMLESS and not name.startswith("~get_")
+    if acts:
+        simulation.inputs.add(resolved, kind._request_class, lambda request: lambda: _repeat(
+            simulation, request, made(), handler))
 
     def answer(request):
-        mailbox.announce(rospy.resolve_name(name), request)
+        mailbox.announce(resolved, request)
         response = made()
+        source = Input(resolved, 0, request, called=True) if acts else None
         try:
-            mailbox.call(lambda: handler(simulation, request, response))
+            mailbox.call(lambda: handler(simulation, request, response), source)
         except (CallFails, Closed) as error:
             raise rospy.ServiceException(str(error)) from None
         except Exception as error:  # whatever a request does, the caller gets one line
@@ -53,6 +63,14 @@ def _offer(simulation: Simulation, name: str, kind: type, handler: Handler) -> N
         return response
 
     rospy.Service(name, kind, answer)
+
+
+def _repeat(simulation: Simulation, request, response, handler: Handler) -> None:
+    """A request of a run that is repeated: whether it failed, its caller was told then."""
+    try:
+        handler(simulation, request, response)
+    except Exception as error:
+        rospy.loginfo("the run's call failed, too: %s", format_error(error))
 
 
 def done(response, message: str) -> None:

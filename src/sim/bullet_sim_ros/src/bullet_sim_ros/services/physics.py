@@ -15,6 +15,7 @@ from geometry_msgs.msg import Vector3
 from bullet_sim.description import PhysicsDescription, WorldDescription
 from bullet_sim.errors import SimulationError, prefixed
 from bullet_sim_ros import convert, names
+from bullet_sim_ros.inputs import Input
 from bullet_sim_ros.mailbox import Closed
 from bullet_sim_ros.reconfigure_server import Value, ValueServer
 from bullet_sim_ros.services.answers import ServiceError, done, service
@@ -90,7 +91,8 @@ class PhysicsReconfigure:
 
     def _in_loop(self, write: Callable[[], None]) -> None:
         try:
-            self._simulation.mailbox.call(write)
+            self._simulation.mailbox.call(write, Input(
+                rospy.resolve_name(names.SET_PARAMETERS), None, called=True))
         except (SimulationError, Closed) as error:
             rospy.logerr("%s: %s", rospy.resolve_name(names.SET_PARAMETERS), error)
             raise rospy.ServiceException(str(error)) from None

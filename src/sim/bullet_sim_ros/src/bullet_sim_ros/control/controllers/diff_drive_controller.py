@@ -12,6 +12,7 @@ from bullet_sim_ros import convert
 from bullet_sim_ros.control.controller_context import ControllerContext
 from bullet_sim_ros.control.controllers.mobile_bases import MobileBaseController
 from bullet_sim_ros.control.registry import controller
+from bullet_sim_ros.inputs import Input
 from bullet_sim_ros.reconfigure_server import Value, offer_values
 
 MULTIPLIERS = (0.5, 1.5)
@@ -57,7 +58,8 @@ class DiffDriveController(MobileBaseController):
         values["enable_odom_tf"] = Value(
             context.parameters.flag("enable_odom_tf", True), False, True, "publish the transform")
         offer_values(context, context.namespace, values,
-                     lambda new: context.mailbox.post(lambda: self._change(new)))
+                     lambda new: context.mailbox.post(
+                         lambda: self._change(new), Input(context.namespace, None)))
 
     def _change(self, values: Mapping[str, float | bool]) -> None:
         self.base.multiply({name: values[name] for name in self.base.multipliers})
