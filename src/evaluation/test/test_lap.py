@@ -7,6 +7,7 @@ from racecar_description.track.centre_line import Corner
 from racecar_description.track.closed_line import Track, build_track
 from racecar_description.track.track_file import TrackFile
 
+from evaluation.course_run import marks_of
 from evaluation.lap import LapScorer, Sample, Verdict
 
 RATE_HZ = 25
@@ -121,3 +122,18 @@ def test_going_back_over_the_start_and_on_again_is_no_lap():
         scorer.add(on_circle(angle, 1.0, i / RATE_HZ))
     assert scorer.verdict is Verdict.DRIVING
     assert not scorer.laps
+
+
+def test_marks_are_where_laps_end_and_where_it_was_farthest_and_lost():
+    scorer = LapScorer(circle(), wanted_laps=2)
+    drive_circle(scorer, 1.1)
+    laps, largest = marks_of(scorer)[:2], marks_of(scorer)[2]
+    around = 2 * math.pi * 1.1 / SPEED
+    assert [mark.text for mark in laps] == ["1", "2"]
+    assert [mark.time for mark in laps] == pytest.approx([around, 2 * around], abs=2 / RATE_HZ)
+    assert (largest.name, largest.text) == ("largest", "-0.100 m")
+    lost = LapScorer(circle())
+    drive_circle(lost, 1.3)
+    assert [(mark.name, mark.text) for mark in marks_of(lost)] == [
+        ("largest", "-0.300 m"), ("lost", lost.why)]
+    assert marks_of(LapScorer(circle())) == []

@@ -34,6 +34,8 @@ def followers(course):
     *(([script, "--method", "magic"],
        f"{script}: no method 'magic' (METHOD=); there are: {', '.join(known_methods())}")
       for script in ("lane_trials", "lane")),
+    (["replay", "--at", "lost", "--run", "out/nope"],
+     "replay: no run at out/nope (RUN=): give the folder of its results, as out/course"),
     (["autorace", "--mission", "park"],
      f"autorace: no mission 'park' (MISSION=); there are: {', '.join(TASKS)}"),
     (["chaos", "--course", "x"],

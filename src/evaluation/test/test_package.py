@@ -13,8 +13,9 @@ PACKAGE = Path(__file__).resolve().parent.parent
 SOURCE = PACKAGE / "src" / "evaluation"
 SHARED = {"case_process", "command_line", "film", "house", "lap", "lap_trial", "live",
           "picture", "report", "start", "trajectory_error", "trial",
-          "run_page", "workers"}  # what trials stand on
-TRIALS = [{"course_run"}, {"race_trials"}, {"avoid"}, {"lane_trials", "lane_encounters"},
+          "run_log", "run_page", "workers"}  # what trials stand on
+TRIALS = [{"course_run"}, {"replay", "launch_without"}, {"race_trials"}, {"avoid"},
+          {"lane_trials", "lane_encounters"},
           {"track", "track_score", "track_trials"}, {"autorace", "autorace_judge"},
           {"navigate", "navigate_parts", "navigate_pictures", "navigate_score"},
           {"localisation_trials", "localisation_drive"},

@@ -108,8 +108,9 @@ class Replay:
         begin_run_log(launched.master_uri, self._session.out / RUN_LOG, **self._of)
         if page is not None:
             launched.start("viewer", ["roslaunch", "sim_viewer", "viewer.launch", *page])
-            launched.wait_for("the page", lambda: rospy.has_param("/sim_viewer/url"), START_LIMIT)
-            self._say(f"the page: {rospy.get_param('/sim_viewer/url')}")
+            launched.wait_for("the page in the browser",
+                              lambda: rospy.has_param("/sim_viewer/url"), START_LIMIT)
+            self._say(f"the page in the browser: {rospy.get_param('/sim_viewer/url')}")
         self._say("another terminal joins by: source devel/setup.bash; export "
                   f"ROS_MASTER_URI={launched.master_uri}")
 
@@ -177,9 +178,9 @@ class Replay:
         except (OSError, xmlrpc.client.Error, rosgraph.MasterException) as error:
             return f"the ROS master does not answer ({error})"
         if not found.publishers[commands] - {"/sim_viewer"}:
-            return f"nobody sends {commands}"
+            return f"no program sends {commands} yet"
         if not found.subscribers[sensor] - {"/sim_viewer"}:
-            return f"nobody reads {sensor}"
+            return f"no program reads {sensor} yet"
         return found.missing_link(sensor) or found.missing_link(commands)
 
     def _driver(self) -> str:
@@ -213,8 +214,8 @@ class Replay:
             sys.executable, "-m", "evaluation.launch_without", self._of["driver"],
             *self._of["words"]])
         spawned = sum("/spawn_" in name for name, _ in self._log.setup)
-        launched.wait_for("the robot", lambda: len(simulator.models()) >= max(1, spawned),
-                          START_LIMIT)
+        launched.wait_for("the robot in the world",
+                          lambda: len(simulator.models()) >= max(1, spawned), START_LIMIT)
         if self._of["controllers"]:
             launched.wait_for("the robot's controllers", self._controllers_started, START_LIMIT)
 
@@ -238,7 +239,8 @@ class Replay:
 
         thread = threading.Thread(target=call, daemon=True)
         thread.start()
-        self._launched.wait_for("the image", lambda: not thread.is_alive(), REPLAY_LIMIT)
+        self._launched.wait_for("the image that is gone to", lambda: not thread.is_alive(),
+                                REPLAY_LIMIT)
         return answers[0]
 
     def _time(self, number: int) -> float:

@@ -5,7 +5,9 @@ import math
 import pytest
 from rigs import body
 
-from bullet_sim.fingerprint import fingerprint
+from bullet_sim.fingerprint import description_hash, fingerprint
+from bullet_sim.formats.loading import load_world
+from bullet_sim.formats.resources import Resources
 from bullet_sim.pose import Pose
 from bullet_sim.world import World
 
@@ -37,3 +39,20 @@ def test_the_way_there_counts_if_it_is_given():
     first = fingerprint(world)
     assert fingerprint(world, first) != first == fingerprint(world)
     world.close()
+
+
+def world_text(plugin):
+    return f"""<sdf version="1.6"><world name="w"><model name="m"><link name="l"/>
+      <plugin name="p" filename="f.so">{plugin}</plugin></model></world></sdf>"""
+
+
+def test_a_description_has_one_hash_and_another_one_another(tmp_path):
+    path = tmp_path / "my.world"
+
+    def read(text):
+        path.write_text(text)
+        return description_hash(load_world(path, Resources()))
+    first = read(world_text("<rate>3</rate>"))
+    assert read(world_text("<rate>3</rate>")) == first
+    assert read(world_text("<rate>4</rate>")) != first
+    assert read(world_text("<rate>3</rate>").replace('"l"', '"k"')) != first

@@ -15,13 +15,13 @@ import rospy
 from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
 from bullet_sim.errors import SimulationError
-from bullet_sim.fingerprint import fingerprint
+from bullet_sim.fingerprint import description_hash, fingerprint
 from bullet_sim.formats.run_log import Event, read_run_log
 from bullet_sim.physics.engine import EngineError
 from bullet_sim_ros import names
 from bullet_sim_ros.inputs import Input
 from bullet_sim_ros.mailbox import Closed
-from bullet_sim_ros.run_log import request_hash, world_hash
+from bullet_sim_ros.run_log import request_hash
 from bullet_sim_ros.scheduler import PeriodicTask
 from bullet_sim_ros.simulation import Simulation
 
@@ -37,6 +37,7 @@ class Replay:
         """OSError or RunLogError if the log cannot be read."""
         self._simulation, self._world = simulation, simulation.world
         self._log = read_run_log(path)
+        self._world_hash = description_hash(self._world.description)
         self._next = 0  # index of the next event
         # Number of the image at which the world stands, unanswered; 0: not begun
         self._image = 0
@@ -94,7 +95,7 @@ class Replay:
             simulation.publish_clock()
 
     def _check_begin(self) -> None:
-        if self._log.header["world_sha256"] != world_hash(self._simulation):
+        if self._log.header["world_sha256"] != self._world_hash:
             raise ReplayError(f"the world {self._log.header['world']} has changed since the run")
         # In any order: robots may be spawned by several nodes. The fingerprints tell the rest.
         if Counter(self._setup) != Counter(self._log.setup):

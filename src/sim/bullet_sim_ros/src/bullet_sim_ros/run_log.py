@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 import rospy
 from rosgraph_msgs.msg import Log
 
-from bullet_sim.fingerprint import fingerprint
+from bullet_sim.fingerprint import description_hash, fingerprint
 from bullet_sim.formats.run_log import header, part
 from bullet_sim_ros import names
 from bullet_sim_ros.inputs import Input
@@ -24,11 +24,6 @@ MARK = "mark "  # how the lines begin by which a learner's program marks a momen
 UPRIGHT = 0.7  # z of a contact's normal, from which on one stands on the other
 # What reads only; of plugins' services, all of which are announced.
 READS = ("get_", "list_")
-
-
-def world_hash(simulation: Simulation) -> str:
-    """SHA-256 of the world as it was read from its files."""
-    return sha256(repr(simulation.world.description).encode()).hexdigest()
 
 
 def request_hash(source: Input) -> str:
@@ -49,7 +44,7 @@ class RunLog:
         self._touching: set[tuple[str, str]] = set()
         self._lines: list[Any] = [header(
             world=rospy.get_param(names.RUNNING, {}).get("world", ""),
-            world_sha256=world_hash(simulation), seed=self._world.seed,
+            world_sha256=description_hash(self._world.description), seed=self._world.seed,
             timestep=self._world.timestep, tick=self._begin,
             run=json.loads(rospy.get_param(names.RUN_LOG_OF, "{}")))]
         self._write()
