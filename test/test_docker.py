@@ -97,7 +97,7 @@ def test_the_editors_container() -> None:
     assert os.access(ROOT / settings["updateContentCommand"].split()[0], os.X_OK)
     assert settings["forwardPorts"] == [8080]
     named = " ".join(settings["customizations"]["vscode"]["extensions"])
-    assert "python" in named and "ros" in named
+    assert "python" in named and "debugpy" in named and "ros" in named
 
 
 @pytest.fixture

@@ -27,6 +27,7 @@ python_packages() {
     $([ "$tests" = no ] || echo requirements-test.txt) \
     $([ "$workers" = no ] || echo requirements-workers.txt) \
     $([ "$learning" = no ] || echo requirements-learning.txt) \
+    $([ "$debugging" = no ] || echo requirements-debugging.txt) \
     $([ "$site" = no ] || echo requirements-site.txt) \
     $([ "$wheels" = no ] || echo requirements-wheels.txt); do
     [ -f "$lists/$file" ] && ! cmp -s "$lists/$file" "$state/$file" || continue

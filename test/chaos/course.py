@@ -31,7 +31,7 @@ class CourseUnderTest:
 COURSES = {course.name: course for course in (
     CourseUnderTest("course", ("learning_topic", "course_follow.launch"), "turtlebot3_waffle",
                     "07follower_ground.py", ("follower",),
-                    ByHand(("learning_topic", "0course.launch", "command_timeout:=0.4", *SIZE),
+                    ByHand(("learning_topic", "0course.launch", "command_timeout:=0.3", *SIZE),
                            {"follower": ("learning_topic", "07follower_ground.py")})),
     CourseUnderTest("race", ("racecar_description", "race.launch"), "racecar", "lane_follow.py",
                     ("follower", "motor_control"),

@@ -7,7 +7,7 @@ A maker is a module beside this one with a function `files`; with `stale` if it 
 it made once; with `sources` (files and folders that it reads) if it is left out while nothing has
 changed. What they make is committed, except that of name_packages and turtlebot3_worlds, which each
 build makes. The pictures of pages have programs of their own here: lesson_pictures.py,
-theory_pictures.py and loop_picture.py.
+theory_pictures.py, loop_picture.py and breakpoint_picture.py.
 """
 
 import argparse

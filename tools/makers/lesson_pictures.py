@@ -158,7 +158,7 @@ def _checks_of_lesson_1() -> np.ndarray:
     lines += ["$ rosnode info /follower", *subscriptions]
     lines += ["$ rostopic hz /camera/rgb/image_raw"]
     lines += [line for line in rates.splitlines() if "rate" in line or "min:" in line][-2:]
-    return _terminal([line.rstrip() for line in lines])
+    return terminal_page([line.rstrip() for line in lines])
 
 
 def _output(*command: str) -> str:
@@ -166,7 +166,7 @@ def _output(*command: str) -> str:
     return done.stdout
 
 
-def _terminal(lines: list[str]) -> np.ndarray:
+def terminal_page(lines: list[str]) -> np.ndarray:
     """Text as a terminal shows it: letters in columns, commands brighter."""
     width = max(WINDOW_WIDTH_PX, max(map(len, lines)) * LETTER_PX + 24)
     page = np.full((len(lines) * LINE_PX + 24, width, 3), bgr(PAPER), np.uint8)
@@ -191,7 +191,7 @@ def main() -> int:
     try:
         with interruptible(), Family() as family:
             if options.scene == COURSE:
-                photograph_course(_start_master(family, options.log), options.images)
+                photograph_course(start_master(family, options.log), options.images)
             else:
                 photograph_scene(family, options)
     except (RunError, rospy.ROSException, rospy.ServiceException) as error:
@@ -221,10 +221,10 @@ def photograph_scene(family: Family, options: argparse.Namespace) -> None:
     known = os.environ.get("GAZEBO_MODEL_PATH", "")
     with Screen() as screen:
         os.environ.update(screen.environment, GAZEBO_MODEL_PATH=f"{made}{os.pathsep}{known}")
-        scene(Stage(_start_master(family, options.log), screen, options.images, model))
+        scene(Stage(start_master(family, options.log), screen, options.images, model))
 
 
-def _start_master(family: Family, log: Path) -> Launched:
+def start_master(family: Family, log: Path) -> Launched:
     launched = Launched(family, log.resolve(), "")
     launched.start_roscore()
     rospy.init_node("lesson_pictures", disable_rosout=True, disable_signals=True)

@@ -37,7 +37,7 @@ def test_the_usual_course(file, monkeypatch):
 
 
 @pytest.mark.parametrize("file, arguments, seconds", [
-    ("0course.launch", (), "0"), ("course_follow.launch", (), "0.4"),
+    ("0course.launch", (), "0"), ("course_follow.launch", (), "0.3"),
     ("course_follow.launch", ("command_timeout:=0",), "0")])
 def test_a_killed_follower_leaves_a_standing_robot(file, arguments, seconds):
     _, params = load(file, *arguments)

@@ -34,7 +34,7 @@ AMENDMENTS = {
     "roslaunch.loader": ["launch_end.amend_loader"],
     "roslaunch.pmon": ["launch_end.amend_signals"],
     "rospy.client": ["waiting.amend_client"],
-    "rospy.core": ["node_end.amend_core"],
+    "rospy.core": ["node_end.amend_core", "breakpoints.amend_core"],
     "rospy.impl.registration": ["node_end.amend_registration"],
     "rospy.impl.tcpros_pubsub": ["node_end.amend_publishing"],
     "rospy.impl.tcpros_service": ["waiting.amend_services"],

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import math
+import re
 import sys
 import threading
 import time
@@ -250,6 +252,12 @@ LOOK_PERIOD = 0.05  # s, wall, between two checks of processes and samples
 LAST_MESSAGE_TIME, INTERRUPTED_TIME = 10.0, 1.0
 
 
+def waits_for_ever(words: Sequence[str]) -> bool:
+    """Whether these arguments of roslaunch let the world wait without a limit, in lockstep."""
+    values = dict(word.split(":=", 1) for word in words if ":=" in word)
+    return re.fullmatch(r"0+(\.0*)?", values.get("lockstep_timeout", "1")) is not None
+
+
 class CarDrive(LiveDrive):
     """Options are those of LiveDrive and `fast`; `drive` scores and keeps the samples."""
 
@@ -278,13 +286,16 @@ class CarDrive(LiveDrive):
     def bring_up(self, launched: Launched) -> None:
         """Start everything and wait until the car is there."""
         words = self.launch_words()
-        if self.options.fast:
+        options = self.options
+        if waits_for_ever(words):  # a program may stand at a breakpoint for as long as it likes
+            options.startup_timeout = options.stuck_timeout = math.inf
+        if options.fast:
             course = self.course
             begin_run_log(launched.master_uri, self.out / RUN_LOG, words, self.driver,
                           course.camera, course.commands, course.controllers)
         listened = self.course.sensors if self.fingerprints else ()
         self._observer = Observer(launched.master_uri, self.course.robot_name(words[2:]),
-                                  self.course, lockstep=self.options.fast, listened=listened)
+                                  self.course, lockstep=options.fast, listened=listened)
         launched.start("roslaunch", ["roslaunch", *words])
         if self.fingerprints:
             self.fingerprints.start()  # before time may begin
@@ -292,7 +303,7 @@ class CarDrive(LiveDrive):
         if self.film is not None:
             self.film.start()
         launched.wait_for(lambda: self._observer.missing, self._take_samples,
-                          self.options.startup_timeout, self.progress.status, pause=0.0)
+                          options.startup_timeout, self.progress.status, pause=0.0)
 
     def watch(self, launched: Launched) -> Outcome:
         """Follow the car until the drive is over."""

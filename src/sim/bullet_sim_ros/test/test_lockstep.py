@@ -49,14 +49,14 @@ def test_of_a_plugin_that_is_gone_nothing_is_awaited():
 
 
 def test_an_image_without_an_answer_is_counted():
-    lockstep = Lockstep("/cmd_vel", 0.0, Mailbox())
+    lockstep = Lockstep("/cmd_vel", 1e-3, Mailbox())
     lockstep.expect()
     lockstep.wait(lambda: False)
     assert lockstep.unanswered == 1
 
 
 def test_the_world_waits_after_the_messages_of_one_sensor():
-    lockstep = Lockstep("/cmd_vel", 0.0, Mailbox(), "/scan")
+    lockstep = Lockstep("/cmd_vel", 1e-3, Mailbox(), "/scan")
     lockstep.expect()
     lockstep.expect(sensor="/imu")
     lockstep.wait(lambda: False)
@@ -67,7 +67,7 @@ def test_the_world_waits_after_the_messages_of_one_sensor():
 
 
 def test_nobody_waits_for_a_sensor_that_is_gone():
-    lockstep = Lockstep("/cmd_vel", 0.0, Mailbox())
+    lockstep = Lockstep("/cmd_vel", 1e-3, Mailbox())
     lockstep.expect("front")
     lockstep.cancel("rear")
     lockstep.wait(lambda: False)

@@ -50,6 +50,8 @@ def advance(simulation: Simulation, most: float = 1) -> int:
     with world.profiler.measure("plugins"):
         simulation.scheduler.run()
     with world.profiler.measure("lockstep"):
-        simulation.lockstep.wait(simulation.stopped)
+        stood = simulation.lockstep.wait(simulation.stopped)
+    if stood:  # at a breakpoint: neither to catch up with, nor slow
+        simulation.restart_pace()
     simulation.real_time_factor.update(world.time, simulation.pacer.factor)
     return steps

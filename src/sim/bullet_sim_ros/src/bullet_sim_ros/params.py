@@ -19,7 +19,7 @@ class NodeParameters:
     pub_state_frequency: float = 100.0  # Hz for model_states and link_states; 0 or less: every step
     enable_ros_network: bool = True
     lockstep: str = ""  # topics to wait for after each camera frame; empty: do not wait
-    lockstep_timeout: float = 1.0  # s, wall
+    lockstep_timeout: float = 1.0  # s, wall; 0: none, for a program at a breakpoint
     lockstep_sensor: str = ""  # topic after whose messages to wait, instead of camera frames
     state_log: str = ""  # file for true poses, contacts and calls; empty: none
     recording: str = ""  # file for all links' poses and the scene; empty: none
@@ -38,7 +38,7 @@ def read_node_parameters() -> NodeParameters:
         max(0.0, _number(names.PUB_STATE_FREQUENCY, defaults.pub_state_frequency)),
         bool(rospy.get_param(names.ENABLE_ROS_NETWORK, defaults.enable_ros_network)),
         str(rospy.get_param(names.LOCKSTEP, defaults.lockstep)).strip(),
-        max(0.0, _number(names.LOCKSTEP_TIMEOUT, defaults.lockstep_timeout)),
+        _positive(names.LOCKSTEP_TIMEOUT, defaults.lockstep_timeout),
         str(rospy.get_param(names.LOCKSTEP_SENSOR, defaults.lockstep_sensor)).strip(),
         str(rospy.get_param(names.STATE_LOG, defaults.state_log)),
         str(rospy.get_param(names.RECORDING, defaults.recording)),
@@ -56,6 +56,16 @@ def _number(name: str, default: float) -> float:
         rospy.logwarn("parameter %s is %r, which is not a number; %g is used",
                       rospy.resolve_name(name), value, default)
         return default
+
+
+def _positive(name: str, default: float) -> float:
+    """As `_number`; what is below 0, which may not mean 0, is no number."""
+    value = _number(name, default)
+    if value >= 0:
+        return value
+    rospy.logwarn("parameter %s is %g, which is not 0 or more; %g is used",
+                  rospy.resolve_name(name), value, default)
+    return default
 
 
 def below(namespace: str) -> Any:

@@ -47,6 +47,28 @@ def _add_update(manager: RegManager, topic: str, uris: list[str]) -> None:
         manager.cond.notify_all()
 
 
+def admit_subscribers(kinds: str, admit: Callable[[str, Callable[[bool], None]], None]) -> None:
+    """Let `admit(node, connect)`, in a thread of its own, connect each new subscriber of a topic
+    whose type begins with `kinds`; `connect(latched)`: with its latched message, or without.
+    """
+    add = rospy.topics._PublisherImpl.add_connection
+
+    def add_connection(topic, connection):
+        def connect(latched):
+            if topic.closed:
+                return
+            if not latched:
+                topic.latch = None
+            add(topic, connection)
+
+        if not topic.type.startswith(kinds):
+            return add(topic, connection)
+        threading.Thread(target=admit, args=(connection.endpoint_id, connect), daemon=True).start()
+        return True
+
+    rospy.topics._PublisherImpl.add_connection = add_connection
+
+
 def set_time(now: rospy.Time) -> None:
     """Set the time of rospy.Time.now, which stamps log messages, in the node that makes /clock.
 

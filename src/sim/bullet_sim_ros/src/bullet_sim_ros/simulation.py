@@ -19,7 +19,7 @@ from bullet_sim_ros.params import NodeParameters
 from bullet_sim_ros.plugin_host.context import PluginContext, PluginHost
 from bullet_sim_ros.plugin_host.registry import load_plugins, load_world_plugins
 from bullet_sim_ros.real_time_factor import RealTimeFactorMonitor
-from bullet_sim_ros.rospy_patches import set_time
+from bullet_sim_ros.rospy_patches import admit_subscribers, set_time
 from bullet_sim_ros.scheduler import Pacer, Scheduler
 
 
@@ -37,6 +37,8 @@ class Simulation:
         self._drawing = DrawingThread(world.profiler)
         self.lockstep = Lockstep(parameters.lockstep, parameters.lockstep_timeout, self.mailbox,
                                  parameters.lockstep_sensor)
+        if self.lockstep.endless:
+            admit_subscribers("sensor_msgs/", self.lockstep.admit)
         self._host = PluginHost(
             world, self.mailbox, self.scheduler, self._drawing, self.lockstep
         )

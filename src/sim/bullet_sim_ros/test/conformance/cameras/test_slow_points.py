@@ -40,7 +40,7 @@ def test_the_last_points_of_a_camera_come_before_it_is_gone(bench, slow):
 
 def test_in_lockstep_points_have_come_when_their_picture_has(make_bench, slow):
     # conforms: libgazebo_ros_openni_kinect.so
-    bench = make_bench(lockstep="/cmd_vel", lockstep_timeout=0.0)
+    bench = make_bench(lockstep="/cmd_vel", lockstep_timeout=1e-3)
     messages = spawn(bench, "eye")
     loop.run(bench.simulation, PICTURE)
     assert len(messages) == 1
