@@ -1,5 +1,9 @@
 """What the loop waits for in lockstep, without a master."""
 
+import pytest
+import rospy
+
+from bullet_sim_ros import names, params
 from bullet_sim_ros.lockstep import Lockstep
 from bullet_sim_ros.mailbox import Mailbox
 
@@ -88,3 +92,15 @@ def test_the_world_waits_for_a_message_on_each_of_several_topics():
     assert loop.goes_on()
     right()
     assert not loop.goes_on()
+
+
+@pytest.mark.parametrize(("given", "used", "lines"), [
+    (0, 0.0, 0), ("0.0", 0.0, 0), (5, 5.0, 0), (-1, 1.0, 1), (float("nan"), 1.0, 1)])
+def test_a_time_out_below_0_is_not_for_ever(monkeypatch, given, used, lines):
+    said = []
+    monkeypatch.setattr(rospy, "get_param", lambda name, default: (
+        given if name == names.LOCKSTEP_TIMEOUT else default))
+    monkeypatch.setattr(rospy, "has_param", lambda name: True)
+    monkeypatch.setattr(rospy, "logwarn", lambda form, *values: said.append(form % values))
+    assert params.read_node_parameters().lockstep_timeout == used
+    assert len(said) == lines and all("which is not 0 or more; 1 is used" in line for line in said)
