@@ -191,6 +191,9 @@ def test_another_seed_is_another_drive_and_the_launch_file_is_told_all(fast_runs
     assert not (run.out / "run.mp4").exists()
     log = (run.out / "log" / "roslaunch.log").read_text()
     asked = ast.literal_eval(re.search("asked for (.*)", log)[1])
+    assert asked.pop("run_log") == str(run.out / "run.log.gz")
+    logged = json.loads(asked.pop("run_log_of"))
+    assert logged["driver"] == "05follower_proporation.py" and "seed:=7" in logged["words"]
     assert asked == {
         "paused": True,
         "real_time_factor": "0",
