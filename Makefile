@@ -1,5 +1,5 @@
 # Every command is a script in scripts/; run a script itself to get its own exit code.
-verbs = setup course race replay viewer drive lane track avoid navigate autorace mark site shell deps build report clean clean-root help \
+verbs = setup course race replay viewer lab drive lane track avoid navigate autorace mark site shell deps build report clean clean-root help \
   test lint race-trials track-trials lane-trials navigation-trials localisation-trials bench-lanes bench fuzz chaos soak mutants check-releases deb image wheels
 .PHONY: $(verbs)
 .DEFAULT_GOAL = help
@@ -54,6 +54,9 @@ replay: ## go back to an image of a run by FAST=1, and drive on from there [RUN=
 viewer: ## start the line course, and show it in the browser [CONTROL=1] [RVIZ=FILE] [PORT=8080] [ADDRESS=0.0.0.0]
 	@exec scripts/viewer.sh $(if $(filter-out 0 no false,$(CONTROL)),control:=true) \
 	  $(if $(PORT),"port:=$$PORT") $(if $(ADDRESS),"address:=$$ADDRESS") $(if $(RVIZ),"rviz:=$$RVIZ")
+
+lab: ## lessons, editor, terminals and the world in one browser window [WS=~/courses_ws] [PORT=8888]
+	@exec scripts/lab.sh $(if $(WS),--ws "$$WS") $(if $(PORT),--port "$$PORT")
 
 drive: ## drive the racecar with the keys W, A, S and D, in a window or in this terminal
 	@scripts/drive.sh

@@ -7,6 +7,7 @@
 #   scripts/setup.sh --learning      also what only the learning environments need (Gymnasium); included in --tests
 #   scripts/setup.sh --debugging     also what only attaching a debugger needs (debugpy); included in --tests
 #   scripts/setup.sh --site          also what only make site needs (mkdocs); included in --tests
+#   scripts/setup.sh --lab           also what only make lab needs (JupyterLab); included in --tests
 #   scripts/setup.sh --wheels        also what only make wheels needs (setuptools); included in --tests
 #   scripts/setup.sh --cpp           also build the lessons' C++ programs, from now on; included in --tests
 #   scripts/setup.sh --bashrc        also source the workspace in ~/.bashrc, for each new terminal
@@ -25,20 +26,21 @@ build_mb=40     # measured: 8 with the packages of the first release
 # Also where what runs has taken Ctrl-C for a fault of its own: a sum of half of the files would begin a new build.
 trap 'trap - INT; kill -INT $$' INT
 state=$root/.setup venv=$root/.venv
-tests=no workers=no learning=no debugging=no site=no wheels=no cpp=OFF force_build=no build=yes bashrc=no
+tests=no workers=no learning=no debugging=no site=no lab=no wheels=no cpp=OFF force_build=no build=yes bashrc=no
 for option in "$@"; do
   case "$option" in
-    --tests) tests=yes workers=yes learning=yes debugging=yes site=yes wheels=yes cpp=ON ;;
+    --tests) tests=yes workers=yes learning=yes debugging=yes site=yes lab=yes wheels=yes cpp=ON ;;
     --workers) workers=yes ;;
     --learning) learning=yes ;;
     --debugging) debugging=yes ;;
     --site) site=yes ;;
+    --lab) lab=yes ;;
     --wheels) wheels=yes ;;
     --cpp) cpp=ON ;;
     --bashrc) bashrc=yes ;;
     --build) force_build=yes ;;
     --dependencies) build=no ;;
-    *) fail $"unknown option $option; there are --tests, --workers, --learning, --debugging, --site, --wheels, --cpp, --bashrc, --build and --dependencies" ;;
+    *) fail $"unknown option $option; there are --tests, --workers, --learning, --debugging, --site, --lab, --wheels, --cpp, --bashrc, --build and --dependencies" ;;
   esac
 done
 did=no

@@ -272,7 +272,7 @@ def python_texts() -> dict[str, list[str]]:
     found |= {text: [ABSENT] for text in absences()}
     found |= {text: ["params-of-navigation"] for text in meanings()}
     listed = subprocess.run(
-        ["git", "-C", str(ROOT), "ls-files", "-co", "--exclude-standard", "src"],
+        ["git", "-C", str(ROOT), "ls-files", "-co", "--exclude-standard", "src", "tools/lab"],
         capture_output=True, text=True, check=True).stdout.split("\n")
     for name in sorted({*listed, *SCRIPTS}):
         path = ROOT / name

@@ -57,13 +57,13 @@ def test_an_image_that_a_page_names_is_built(name: str) -> None:
 def test_the_page_is_published_to_this_machine_alone() -> None:
     published = [port for service in COMPOSE["services"].values()
                  for port in service.get("ports", [])]
-    assert published == ["127.0.0.1:${PORT:-8080}:8080"]
+    assert published == ["127.0.0.1:${PORT:-8080}:8080", "127.0.0.1:${LAB_PORT:-8888}:8888"]
 
 
 def test_every_terminal_is_in_the_network_of_the_world() -> None:
-    for name in ("viewer", "shell"):
+    for name, network in (("viewer", "network"), ("shell", "network"), ("lab", "lab-network")):
         service = COMPOSE["services"][name]
-        assert service["network_mode"] == "service:network" and "network" in service["depends_on"]
+        assert service["network_mode"] == f"service:{network}" and network in service["depends_on"]
         # The engine refuses both where a container takes another's network.
         assert not {"hostname", "ports"} & set(service)
 

@@ -29,6 +29,7 @@ python_packages() {
     $([ "$learning" = no ] || echo requirements-learning.txt) \
     $([ "$debugging" = no ] || echo requirements-debugging.txt) \
     $([ "$site" = no ] || echo requirements-site.txt) \
+    $([ "$lab" = no ] || echo requirements-lab.txt) \
     $([ "$wheels" = no ] || echo requirements-wheels.txt); do
     [ -f "$lists/$file" ] && ! cmp -s "$lists/$file" "$state/$file" || continue
     touch "$state/venv-unfinished"

@@ -95,8 +95,9 @@ function take(event) {
 }
 
 function connect() {
-  const scheme = location.protocol === "https:" ? "wss" : "ws";
-  socket = new WebSocket(`${scheme}://${location.host}/ws${location.search}`);
+  const address = new URL(`ws${location.search}`, location.href); // beside the page, also behind a proxy
+  address.protocol = location.protocol === "https:" ? "wss" : "ws";
+  socket = new WebSocket(address);
   socket.binaryType = "arraybuffer";
   socket.onmessage = take;
   socket.onopen = () => {

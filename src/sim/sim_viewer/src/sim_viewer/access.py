@@ -16,7 +16,7 @@ from sim_viewer.options import Options
 
 HEADERS = {
     "Content-Security-Policy": "default-src 'self'; img-src 'self' blob: data:; "
-                               "style-src 'self' 'unsafe-inline'; frame-ancestors 'none'",
+                               "style-src 'self' 'unsafe-inline'; frame-ancestors 'self'",
     "Cache-Control": "no-cache",
     "Referrer-Policy": "no-referrer",
     "X-Content-Type-Options": "nosniff",
@@ -82,8 +82,10 @@ class Access:
         return True
 
     def _shows_token(self, request: web.Request) -> bool:
-        shown = request.query.get("token") or request.cookies.get(_cookie(request), "")
-        return hmac.compare_digest(shown.encode(errors="replace"), self._token.encode())
+        # Either of them: behind a proxy, a token in the address may be the proxy's own.
+        shown = (request.query.get("token", ""), request.cookies.get(_cookie(request), ""))
+        return any(hmac.compare_digest(one.encode(errors="replace"), self._token.encode())
+                   for one in shown)
 
 
 def _cookie(request: web.Request) -> str:

@@ -1,0 +1,298 @@
+"""`make lab`: who gets in, what is laid out, what its buttons do, and what is left at its end."""
+
+import asyncio
+import contextlib
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.parse
+import urllib.request
+from dataclasses import dataclass
+from pathlib import Path
+
+import aiohttp
+import psutil
+import pytest
+import yaml
+
+pytestmark = pytest.mark.processes
+ROOT = Path(__file__).resolve().parent.parent
+TOOL = ROOT / "tools/lab"
+LIMIT = 180.0  # s
+SCRIPTS = "src/my_lessons/scripts/learning_topic"
+sys.path.append(str(ROOT / "src/sim/sim_viewer/test"))
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+def wait_until(look, what: str, limit: float = LIMIT):
+    until = time.monotonic() + limit
+    while not (found := look()):
+        assert time.monotonic() < until, f"no {what} within {limit} s"
+        time.sleep(0.1)
+    return found
+
+
+@dataclass
+class Lab:
+    """A running one: its process, output, folder, and what its address says."""
+
+    process: subprocess.Popen
+    output: Path
+    ws: Path
+    base: str = ""
+    token: str = ""
+
+    def ask(self, path: str, body: dict | None = None, token: str | None = None,
+            method: str | None = None) -> tuple[int, dict | list | str]:
+        """Status and answer of the lab's server; `token`: another than its own, "" for none."""
+        shown = self.token if token is None else token
+        request = urllib.request.Request(
+            self.base + path, data=None if body is None else json.dumps(body).encode(),
+            headers={"Authorization": f"token {shown}"} if shown else {}, method=method)
+        try:
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                status, text = answer.status, answer.read().decode()
+        except urllib.error.HTTPError as error:
+            status, text = error.code, error.read().decode()
+        try:
+            return status, json.loads(text)
+        except ValueError:
+            return status, text
+
+    def do(self, act: str, what: str) -> tuple[int, dict]:
+        return self.ask("/courses/do", {"act": act, "what": what})
+
+    def shown(self, terminal: str, pattern: str) -> str:
+        """The terminal's text, once the pattern is in it."""
+        return asyncio.run(self._shown(terminal, pattern))
+
+    async def _shown(self, terminal: str, pattern: str) -> str:
+        text = ""
+        address = f"{self.base}/terminals/websocket/{terminal}?token={self.token}"
+        with contextlib.suppress(TimeoutError):
+            async with (asyncio.timeout(LIMIT), aiohttp.ClientSession() as http,
+                        http.ws_connect(address) as link):
+                async for message in link:
+                    kind, *rest = json.loads(message.data)
+                    text += rest[0] if kind == "stdout" else ""
+                    if re.search(pattern, text, re.DOTALL):
+                        return text
+        raise AssertionError(f"no {pattern} in the terminal {terminal}: {text}")
+
+    def master(self) -> str:
+        text = (self.ws / ".lab/bashrc").read_text()
+        return re.search(r"ROS_MASTER_URI=(\S+)", text)[1]
+
+
+def started(folder: Path, *words: str, language: str = "en") -> Lab:
+    """A lab that has printed its address, or has ended."""
+    folder.mkdir(exist_ok=True)
+    output, ws = folder / "output.txt", folder / "ws"
+    env = {**os.environ, "HOME": str(folder), "LANGUAGE": language}
+    for name in ("ROS_MASTER_URI", "DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
+        env.pop(name, None)
+    with output.open("wb") as file:
+        process = subprocess.Popen([sys.executable, TOOL, "--ws", ws, *words], env=env,
+                                   stdout=file, stderr=subprocess.STDOUT,
+                                   stdin=subprocess.DEVNULL, start_new_session=True)
+    lab = Lab(process, output, ws)
+    found = wait_until(lambda: re.search(r"lab: (http://\S+)/lab\?token=(\S+)", output.read_text())
+                       or process.poll() is not None, "address")
+    assert found is not True, output.read_text()
+    lab.base, lab.token = found[1], found[2]
+    return lab
+
+
+def ended(lab: Lab) -> int:
+    """End it by Ctrl-C; its exit code. No process of it may be left."""
+    family = psutil.Process(lab.process.pid).children(recursive=True)
+    lab.process.send_signal(signal.SIGINT)
+    code = lab.process.wait(LIMIT)
+    left = psutil.wait_procs(family, timeout=30)[1]
+    assert not left, left
+    return code
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory):
+    lab = started(tmp_path_factory.mktemp("lab"), "--port", str(free_port()))
+    yield lab
+    assert ended(lab) == 0, lab.output.read_text()
+
+
+def page_port(lab: Lab) -> int:
+    config = json.loads((lab.ws / ".lab/config.json").read_text())
+    return config["ServerProxy"]["servers"]["simulator"]["port"]
+
+
+def test_nobody_gets_in_without_the_token(lab):
+    for token in ("", "wrong"):
+        assert lab.ask("/api/contents", token=token)[0] == 403
+        assert lab.ask("/courses/menu", token=token)[0] == 403
+        assert lab.ask("/courses/do", {"act": "course", "what": "line"}, token=token)[0] == 403
+        status, text = lab.ask("/simulator/about", token=token)
+        assert status == 403 or "password_input" in text  # Jupyter's page that asks for it
+        assert "password_input" in lab.ask("/lab", token=token)[1]
+    with pytest.raises(urllib.error.HTTPError, match="403"):  # the page itself, past the lab
+        urllib.request.urlopen(f"http://127.0.0.1:{page_port(lab)}/about")
+    assert lab.ask("/api/contents")[0] == 200
+    listening = {one.laddr.ip for process in [psutil.Process(lab.process.pid)]
+                 for child in process.children(recursive=True) if "jupyterlab" in child.cmdline()
+                 for one in child.net_connections() if one.status == psutil.CONN_LISTEN}
+    assert listening == {"127.0.0.1"}
+    assert (lab.ws / ".lab").stat().st_mode & 0o077 == 0
+    told = " ".join(" ".join(child.cmdline()) for child in psutil.Process(
+        lab.process.pid).children(recursive=True))
+    assert lab.token not in told
+
+
+def test_who_has_the_token_may_drive(lab):
+    assert lab.ask("/simulator/about")[1]["control"] is True
+    assert lab.ask("/simulator/about")[1]["master"].rstrip("/") == lab.master()
+
+    async def story():
+        headers = {"Authorization": f"token {lab.token}", "Origin": lab.base}
+        async with (aiohttp.ClientSession(headers=headers) as http,
+                    http.ws_connect(f"{lab.base}/simulator/ws") as link, asyncio.timeout(LIMIT)):
+            await link.send_json({"id": 1, "call": "about", "args": {}})
+            async for message in link:
+                if message.type == aiohttp.WSMsgType.TEXT and "id" in message.json():
+                    return message.json()
+    assert asyncio.run(story())["id"] == 1
+
+
+def test_the_first_start_lays_out_page_script_world_and_terminal(lab):
+    status, workspace = lab.ask("/lab/api/workspaces/default")
+    assert status == 200
+    widgets = {name.partition(":")[0]: entry["data"] for name, entry in workspace["data"].items()
+               if name != "layout-restorer:data"}
+    assert set(widgets) == {"markdownviewer-widget", "editor", "server-proxy", "terminal"}
+    for name in ("markdownviewer-widget", "editor"):
+        assert lab.ask(f"/api/contents/{widgets[name]['path']}")[0] == 200
+    assert lab.ask(widgets["server-proxy"]["url"])[0] == 200
+    proxied = lab.ask("/server-proxy/servers-info")[1]["server_processes"]
+    assert [entry["name"] for entry in proxied] == ["simulator"]
+
+
+def test_every_tile_leads_somewhere(lab):
+    menu = lab.ask("/courses/menu")[1]
+    assert [course["name"] for course in menu["courses"]] == [
+        "line", "racecar", "house", "lanes", "tracking", "autorace", "turtlesim"]
+    courses = yaml.safe_load((TOOL / "lessons.yaml").read_text("utf-8"))["courses"]
+    assert all(course["zh"] for course in courses.values())
+    for entry in menu["lessons"] + menu["exercises"]:
+        for path in (entry["page"], entry["script"]):
+            assert lab.ask(f"/api/contents/{path}?content=0")[0] == 200, path
+    assert len(menu["lessons"]) > 20 and len(menu["exercises"]) > 10
+    config = re.search(r'id="jupyter-config-data"[^>]*>(.*?)</script>', lab.ask("/lab")[1],
+                       re.DOTALL)
+    extensions = {one["name"] for one in json.loads(config[1])["federated_extensions"]}
+    assert {"courses-lab", "@jupyterhub/jupyter-server-proxy"} <= extensions
+
+
+def test_a_script_runs_again_after_ctrl_c(lab):
+    script = lab.ws / SCRIPTS / "forever.py"
+    script.write_text("import os, time\nprint('begun as', os.getpid(), flush=True)\n"
+                      "import rospy\nprint('rospy is', rospy.__name__, flush=True)\n"
+                      "while True:\n    time.sleep(1)\n")
+    for _ in range(2):
+        status, answer = lab.do("run", f"{SCRIPTS}/forever.py")
+        assert (status, answer) == (200, {"terminal": "run"})
+        lab.shown("run", r"begun as \d+")
+    text = lab.shown("run", r"begun as \d+.*KeyboardInterrupt.*begun as \d+.*rospy is rospy")
+    first, second = re.findall(r"begun as (\d+)", text)
+    assert not psutil.pid_exists(int(first)) and psutil.pid_exists(int(second))
+
+
+def test_what_is_wrong_with_a_script_is_said(lab):
+    (lab.ws / SCRIPTS / "broken.py").write_text("print('x'\n")
+    assert lab.do("run", f"{SCRIPTS}/broken.py")[0] == 200
+    lab.shown("run", "broken.py.*SyntaxError")
+    for what, word in (("../../etc/passwd", "there is no file"), ("nothing.py", "there is no file"),
+                       ("src/my_lessons/package.xml", "cannot be run")):
+        status, answer = lab.do("run", what)
+        assert (status, word in answer["message"]) == (409, True), answer
+    assert lab.do("course", "nowhere") == (409, {"message": "there is no course nowhere"})
+    assert lab.ask("/courses/do", {"act": "dance", "what": ""})[0] == 400
+
+
+def test_reset_brings_the_lesson_s_file_back_and_keeps_the_other(lab):
+    ours = ROOT / "src/learning_topic/scripts/05follower_proporation.py"
+    before, path = ours.read_text(), f"{SCRIPTS}/05follower_proporation.py"
+    lab.ask(f"/api/contents/{path}", {"type": "file", "format": "text", "content": "mine\n"},
+            method="PUT")
+    assert (lab.ws / path).read_text() == "mine\n" and ours.read_text() == before
+    status, answer = lab.do("reset", path)
+    assert status == 200
+    assert (lab.ws / path).read_text() == before
+    assert (lab.ws / answer["kept"]).read_text() == "mine\n"
+    status, answer = lab.do("reset", f"{SCRIPTS}/broken.py")
+    assert status == 409 and "no copy of a lesson's file" in answer["message"]
+    done = subprocess.run([sys.executable, TOOL, "--ws", lab.ws, "--reset", ours.name],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and "your version is kept as" in done.stdout
+
+
+def test_an_exercise_is_checked(lab):
+    assert lab.do("check", "white_line") == (200, {"terminal": "check"})
+    lab.shown("check", "FAIL")
+
+
+def test_the_pages_are_read_only_and_ours_are_not_in_reach(lab):
+    page = lab.ws / "pages/src/learning_topic/README.md"
+    assert page.stat().st_mode & 0o222 == 0 and not page.is_symlink()
+    assert not [path for path in (lab.ws / "src").rglob("*")
+                if path.is_symlink() and ROOT in path.resolve().parents
+                and path.name != "CMakeLists.txt"]
+
+
+def refused(*words: str) -> str:
+    """What a lab prints that does not start."""
+    done = subprocess.run([sys.executable, TOOL, *words], capture_output=True, text=True,
+                          timeout=LIMIT, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("lab: ") and done.stderr.count("\n") == 1, done.stderr
+    return done.stderr
+
+
+def test_what_cannot_be_is_one_line(lab, tmp_path):
+    taken = lab.base.rsplit(":", 1)[1]
+    assert f"port {taken} is taken" in refused("--ws", str(tmp_path / "a"), "--port", taken)
+    assert "give one from 1024" in refused("--ws", str(tmp_path / "a"), "--port", "80")
+    assert f"A lab runs already in {lab.ws}: {lab.base}" in refused("--ws", str(lab.ws))
+    assert "the courses' own folder" in refused("--ws", str(ROOT / "src/mine"))
+    (tmp_path / "file").write_text("")
+    assert "cannot be written by you" in refused("--ws", str(tmp_path / "file"))
+    assert not (tmp_path / "a").exists()
+
+
+def test_two_labs_never_meet(lab, tmp_path):
+    other = started(tmp_path, "--port", str(free_port()), language="zh_CN")
+    try:
+        assert other.master() != lab.master() and page_port(other) != page_port(lab)
+        assert other.ask("/api/contents", token=lab.token)[0] == 403
+        menu = other.ask("/courses/menu")[1]
+        assert menu["texts"]["run"] == "运行"
+        assert all(lesson["page"].endswith("README.zh-CN.md") for lesson in menu["lessons"])
+        locale = other.ask("/lab/api/settings/@jupyterlab/translation-extension:plugin")[1]
+        assert locale["schema"]["properties"]["locale"]["default"] == "zh_CN"
+        (other.ws / SCRIPTS / "01follower.py").write_text("mine\n")
+    finally:
+        assert ended(other) == 0
+    again = started(tmp_path, "--port", str(free_port()))
+    try:
+        assert again.token != other.token
+        assert (again.ws / SCRIPTS / "01follower.py").read_text() == "mine\n"
+    finally:
+        assert ended(again) == 0
