@@ -5,6 +5,7 @@ import contextlib
 import json
 import os
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -264,6 +265,41 @@ def refused(*words: str) -> str:
     assert done.returncode == 2
     assert done.stderr.startswith("lab: ") and done.stderr.count("\n") == 1, done.stderr
     return done.stderr
+
+
+CLICK = """(() => {
+  const one = [...document.querySelectorAll(%r)].find((each) => each.textContent.trim() === %r);
+  one?.click();
+  return Boolean(one);
+})()"""
+
+
+@pytest.mark.skipif(not shutil.which("chromium"), reason="no Chromium")
+def test_in_the_browser_from_the_first_page_to_a_robot_that_drives(lab):
+    import chromium
+
+    def odometry() -> float:
+        done = subprocess.run(["rostopic", "echo", "-n", "1", "/odom/pose/pose/position/x"],
+                              env={**os.environ, "ROS_MASTER_URI": lab.master()}, timeout=LIMIT,
+                              capture_output=True, text=True, check=True)
+        return float(done.stdout.split()[0])
+
+    browser = chromium.Browser()
+    try:
+        page = browser.open(f"{lab.base}/lab?token={lab.token}")
+        page.resize(1400, 900)
+        for shown in (".jp-MarkdownViewer h1", ".jp-FileEditor", ".jp-Terminal", "iframe"):
+            page.wait_for(f"document.querySelector({shown!r}) !== null", LIMIT)
+        page.wait_for(CLICK % (".jp-LauncherCard", "Line course"), LIMIT)
+        lab.shown("course", "process.*gazebo")
+        page.wait_for("/[1-9]/.test(document.querySelector('iframe').contentDocument"
+                      ".querySelector('#simulation')?.textContent)", LIMIT)
+        assert abs(odometry()) < 0.01
+        assert page.evaluate(CLICK % (".jp-Toolbar jp-button", "Run"))
+        wait_until(lambda: odometry() > 0.05, "robot that drives")
+        assert not page.errors
+    finally:
+        browser.close()
 
 
 def test_what_cannot_be_is_one_line(lab, tmp_path):
