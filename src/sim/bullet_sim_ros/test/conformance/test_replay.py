@@ -26,7 +26,7 @@ CAR = f"""<model name="car"><pose>0 0 0.1 0 0 0</pose>
     <topicName>turn</topicName><serviceName>turn/calibrate</serviceName>
     <updateRate>30</updateRate></plugin></model>"""
 HERE = Pose(orientation=Quaternion(w=1.0))
-LOCKSTEP = {"lockstep": "/cmd_vel", "lockstep_timeout": 0.0, "lockstep_sensor": "/turn"}
+LOCKSTEP = {"lockstep": "/cmd_vel", "lockstep_timeout": 1e-6, "lockstep_sensor": "/turn"}
 
 
 def command(forward, turn=0.0):
