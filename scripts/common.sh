@@ -5,13 +5,13 @@ self=$(basename "$0" .sh)
 
 # $"..." follows the locale. Chinese is shown on machines, too, whose C library has no data of a Chinese locale: by those of
 # C.UTF-8, which glibc looks up under this name, too. Under its own name glibc translates nothing (from 2.39 on).
-TEXTDOMAIN=courses-shell TEXTDOMAINDIR=$root/src/compat/terminal_language/src/terminal_language/locale
+TEXTDOMAIN=courses-shell TEXTDOMAINDIR=$root/src/interfaces/terminal_language/src/terminal_language/locale
 translated() { cat; }  # what a program of ours wrote before devel/ was there
 spoken=${LC_ALL:-${LC_MESSAGES:-${LANG:-}}}
 case "$spoken" in C | POSIX) spoken= ;; *) spoken=${LANGUAGE:-$spoken} ;; esac
 if [[ $spoken == zh* ]]; then
   export LC_ALL=C_CN.UTF-8 LANGUAGE=zh_CN
-  translated() { PYTHONPATH=$root/src/compat/terminal_language/src python3 -m terminal_language; }
+  translated() { PYTHONPATH=$root/src/interfaces/terminal_language/src python3 -m terminal_language; }
 fi
 
 say() { printf '%s\n' "$*"; }

@@ -17,6 +17,6 @@ done
 # Not with `rosrun`: a missing package may be why this workspace could not be built.
 compat=$root/src/compat
 PYTHONPATH=$root/src/workspace_needs/src:$root/src/interfaces/node_basics/src
-export PYTHONPATH=$PYTHONPATH:$compat/python_amendments/src:$compat/terminal_language/src
+export PYTHONPATH=$PYTHONPATH:$compat/python_amendments/src:$root/src/interfaces/terminal_language/src
 export ROS_PACKAGE_PATH=$root/src:/usr/share
 exec python3 -m workspace_needs.command "${arguments[@]}" "$workspace"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Collects what our programs print, for the catalogues of src/compat/terminal_language.
+"""Collects what our programs print, for the catalogues of src/interfaces/terminal_language.
 
     terminal_texts.py            adds new texts to the .po files, removes those that are gone, and
                                  writes the .mo files
@@ -21,19 +21,17 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-LOCALES = ROOT / "src/compat/terminal_language/src/terminal_language/locale"
+LOCALES = ROOT / "src/interfaces/terminal_language/src/terminal_language/locale"
 KEPT = LOCALES / "kept.txt"  # upstream's sentences and texts that no terminal shows
 LANGUAGE = "zh_CN"
 # Programs for those who work on this repository, which print English.
 INSTRUMENTS = re.compile(
-    r"src/sim_bench/|src/compat/terminal_language/|src/trial_worlds/"
+    r"src/sim_bench/|src/interfaces/terminal_language/|src/trial_worlds/"
     r"|src/.*/(training|test)/"
     r"|src/.*/(setup|conftest|(draw|train)_\w+)\.py|src/sim/bullet_sim/examples/"
     r"|src/driving_courses/examples/|src/evaluation/src/evaluation/\w+_trials\.py")
-# Parts of the page's server, whose texts only the page shows.
-PAGE = re.compile(
-    r"src/sim/sim_viewer/src/sim_viewer/"
-    r"(rviz/(?!config)|tools/|(?!node|options|restart|running_page|server|guard|drive|scene)\w+\.py)")
+# The page shows rviz's own words for its displays.
+RVIZ = re.compile(r"src/sim/sim_viewer/src/sim_viewer/rviz/displays/")
 SCRIPTS = ("scripts/own_packages.py",)  # setup runs them
 WORD = re.compile(r"(?<![\w/.-])[A-Za-z]?[a-z']+(?![\w/-]|\.[a-z])")
 DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
@@ -139,8 +137,10 @@ OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its pla
 OF_VALUES = ("none", "unknown", "a number", "a text", "this user", "parent link", "child link",
              "link", "joint", "model", "sensor", "function call", "function definition",
              "class definition", "literal", "expression", "attribute", "simulated clock /clock",
-             "the disk", "driving", "scene", "tracker", "follower", "mission", "method", "avoider",
-             "reached", "contact", "late")
+             "the disk", "driving", "scene", "tracker", "follower", "mission", "operation",
+             "method", "avoider", "reached", "contact", "late",
+             "Graph", "Plot", "Cameras", "Console", "TF", "Bags", "Topics", "Drive", "Services",
+             "Parameters")
 OF_CHECK = ("PROBLEM", "NOT THERE", "not checked", "approximated", "hint", "ignored",
             "works",  # its words
             "world {0} ({1} models)", "model {0} ({1} links, {2} joints)", "the text",
@@ -276,7 +276,7 @@ def python_texts() -> dict[str, list[str]]:
         capture_output=True, text=True, check=True).stdout.split("\n")
     for name in sorted({*listed, *SCRIPTS}):
         path = ROOT / name
-        if INSTRUMENTS.match(name) or PAGE.match(name) or path.is_symlink() or not path.is_file():
+        if INSTRUMENTS.match(name) or RVIZ.match(name) or path.is_symlink() or not path.is_file():
             continue
         with path.open("rb") as file:
             first = file.readline(80)

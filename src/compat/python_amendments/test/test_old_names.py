@@ -10,7 +10,7 @@ import pytest
 from python_amendments import old_names
 
 SOURCE = Path(__file__).resolve().parents[1] / "src"
-LANGUAGE = SOURCE.parents[1] / "terminal_language/src"
+LANGUAGE = SOURCE.parents[2] / "interfaces/terminal_language/src"
 IMAGE = "import cv2, numpy as np; image = np.zeros((9, 9), np.uint8); image[2:5, 2:5] = 255\n"
 CONTOURS = "cv2.findContours(image, cv2.RETR_TREE, cv2.CHAIN_APPROX_SIMPLE)"
 MARKER = (IMAGE + "d = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)\n"

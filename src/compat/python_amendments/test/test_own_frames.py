@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[1] / "src"
-LANGUAGE = SOURCE.parents[1] / "terminal_language/src"
+LANGUAGE = SOURCE.parents[2] / "interfaces/terminal_language/src"
 
 
 def error_of(tmp_path, code):

@@ -14,7 +14,7 @@ from python_amendments import cv_bridge_colours, no_screen, windows
 from python_amendments.windows import Windows, ros_label
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1] / "src"
-LANGUAGE = SOURCE.parents[1] / "terminal_language/src"
+LANGUAGE = SOURCE.parents[2] / "interfaces/terminal_language/src"
 BASICS = SOURCE.parents[2] / "interfaces/node_basics/src"
 
 

@@ -10,6 +10,8 @@ import rosgraph
 import rospy
 from background import wait_until
 from chromium import Browser
+from geometry_msgs.msg import Twist
+from sensor_msgs.msg import Image
 from turtlesim.msg import Pose
 
 POSE = "/turtle1/pose"
@@ -47,6 +49,26 @@ class ToolsPage(unittest.TestCase):
     def text(self, selector):
         found = self.page.evaluate(f"document.querySelector({json.dumps(selector)})?.textContent")
         return found or ""
+
+    def test_the_graph_says_who_drives_and_which_commands_nobody_hears(self):
+        self.open("graph")
+        self.page.wait_for("""
+            document.querySelector('#wiring tr[data-name="/turtle1/cmd_vel"]')?.textContent
+              .includes('/draw_square')""")
+        self.assertEqual(self.text("#wiring-faults"), "")
+        rival = rospy.Publisher("/turtle1/cmd_vel", Twist, queue_size=1)
+        self.addCleanup(rival.unregister)
+        self.page.wait_for(f"""
+            document.querySelector('#wiring-faults').textContent
+              .includes({json.dumps(rospy.get_name())})""")
+
+    def test_a_window_of_opencv_is_shown_beside_the_camera_when_it_appears(self):
+        self.open("cameras")
+        for topic in ("/camera/image_raw", "/finder/windows/mask"):
+            sender = rospy.Publisher(topic, Image, queue_size=1, latch=True)
+            self.addCleanup(sender.unregister)
+            sender.publish(Image(height=2, width=2, step=2, encoding="mono8", data=bytes(4)))
+            self.page.wait_for(f"!!document.querySelector('figure[data-topic=\"{topic}\"]')")
 
     def test_the_graph_is_drawn(self):
         self.open("graph")

@@ -102,6 +102,7 @@ export function mount(place, link) {
 
 function controls(panel, link) {
   const state = element("p", { id: "drive-state" });
+  const drivers = element("p", { id: "drive-who", class: "muted" });
   const speed = slider("drive-speed", t("speed", "速度"), "m/s", SPEED);
   const turn = slider("drive-turn", t("turning", "转向"), "rad/s", TURN);
   const steer = slider("drive-steer", t("steering angle", "转向角"), "rad", STEER);
@@ -133,8 +134,13 @@ function controls(panel, link) {
   }), say);
   steer.label.hidden = true;
   endings.push(listenToKeys(handle));
+  endings.push(link.watch("wiring", {}, ({ rows = [] }) => {
+    const nodes = rows.find(({ name }) => name === topic)?.from ?? [];
+    drivers.textContent = nodes.length ? t(`${nodes.join(", ")} sends commands here, too`,
+      `${nodes.join(", ")} 也在这里发送指令`) : "";
+  }));
   endings.push(link.onConnection((there) => there || handle.drop("connection")));
-  panel.append(element("label", { text: t("Topic", "话题") }, topicChoice(link, open)),
+  panel.append(element("label", { text: t("Topic", "话题") }, topicChoice(link, open)), drivers,
     speed.label, turn.label, steer.label, joystick(handle), state);
   say("idle");
 }

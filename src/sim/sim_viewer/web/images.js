@@ -9,6 +9,7 @@ const LOOK_AGAIN_MS = 3000; // for new topics
 const COUNTED_MS = 2000; // over which pictures a second are counted
 const MOST_PX = 960;
 const CHOSEN = "images"; // the topics shown, stored by the browser
+const WINDOW = /\/windows\/[^/]+$/; // of a script that calls cv2.imshow
 const LOADING = t("loading …", "正在加载……"); // until the first picture
 
 let open = null;
@@ -98,6 +99,9 @@ class Tab {
     if (document.hidden) return;
     const topics = await this._link.call("image_topics").catch(() => null);
     if (this._closed || topics === null || String(topics) === String(this._topics)) return;
+    for (const topic of topics) { // a window is shown when it appears, as on a screen
+      if (WINDOW.test(topic) && !this._topics?.includes(topic)) this._chosen.add(topic);
+    }
     this._topics = topics;
     if (!topics.some((topic) => this._chosen.has(topic)) && topics.length) {
       this._chosen.add(topics.find((topic) => !topic.includes("depth")) ?? topics[0]);

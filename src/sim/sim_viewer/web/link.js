@@ -1,5 +1,7 @@
 // The connection to the server: operations, and things to watch, which survive a lost connection.
 
+import { language, t } from "./language.js";
+
 const RETRY_MS = 1000;
 
 let socket = null;
@@ -25,7 +27,7 @@ export function onConnection(listener) {
 
 /** Ask the server for something; the promise fails with its reason. */
 export function call(op, args = {}) {
-  if (!connected()) return Promise.reject(new Error("not connected"));
+  if (!connected()) return Promise.reject(new Error(t("not connected", "未连接")));
   const id = nextId++;
   return new Promise((resolve, reject) => {
     calls.set(id, { resolve, reject });
@@ -97,6 +99,7 @@ function take(event) {
 function connect() {
   const address = new URL(`ws${location.search}`, location.href); // beside the page, also behind a proxy
   address.protocol = location.protocol === "https:" ? "wss" : "ws";
+  if (language === "zh") address.searchParams.set("language", "zh_CN");
   socket = new WebSocket(address);
   socket.binaryType = "arraybuffer";
   socket.onmessage = take;
@@ -105,7 +108,7 @@ function connect() {
     watches.forEach(begin);
   };
   socket.onclose = () => {
-    calls.forEach(({ reject }) => reject(new Error("the connection was lost")));
+    calls.forEach(({ reject }) => reject(new Error(t("the connection was lost", "连接已断开"))));
     calls.clear();
     byNumber.clear();
     early.clear();

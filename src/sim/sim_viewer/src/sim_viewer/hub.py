@@ -1,6 +1,7 @@
 """The connected browsers: their requests in, answers and events of their watches out.
 
-The queues of messages to a browser are limited, so that a slow one costs no memory.
+The queues of messages to a browser are limited, so that a slow one costs no memory. Refusals and
+errors are in the language that the page asks for by `?language=zh_CN`.
 """
 
 import asyncio
@@ -9,10 +10,12 @@ import itertools
 import json
 import struct
 from collections import deque
+from collections.abc import Callable
 from typing import Any
 
 import rospy
 from aiohttp import WSMsgType, web
+from terminal_language.catalogue import read_catalogue
 
 from sim_viewer import registry
 from sim_viewer.registry import Context, Node, Refused
@@ -25,6 +28,8 @@ MOST_BROWSERS = 100
 MOST_AT_ONCE = 64  # operations in progress, and watches, of one browser
 LONGEST_ID = 64  # characters of a message's number, which is sent back
 GOODBYE = 1.0  # s for all browsers together, when the node ends
+LANGUAGES = ("zh_CN",)  # of a page, besides English
+LINES = ("faults", "loose")  # what an event says to its reader, lists of lines
 PING_PERIOD = 15.0  # s; a browser that does not answer is disconnected
 
 
@@ -138,13 +143,13 @@ class Hub:
         self._sockets.add(socket)
         try:
             await socket.prepare(request)
-            await self._serve(socket)
+            await self._serve(socket, request.query.get("language", ""))
         finally:
             self._sockets.discard(socket)
         return socket
 
-    async def _serve(self, socket: web.WebSocketResponse) -> None:
-        client = Client(socket, Context(self._node, next(self._numbers)))
+    async def _serve(self, socket: web.WebSocketResponse, language: str) -> None:
+        client = Client(socket, Context(self._node, next(self._numbers)), speaker(language))
         try:
             await client.serve()
         finally:
@@ -159,12 +164,18 @@ class Hub:
                 one.cancel()
 
 
-class Client:
-    """One connection."""
+def speaker(language: str) -> Callable[[str], str]:
+    """What turns a line of ours into this language; English if it is none of LANGUAGES."""
+    return read_catalogue(language).translate if language in LANGUAGES else str
 
-    def __init__(self, socket: web.WebSocketResponse, context: Context):
+
+class Client:
+    """One connection; `say` turns what is said to its user into its language."""
+
+    def __init__(self, socket: web.WebSocketResponse, context: Context, say: Callable[[str], str]):
         self._socket = socket
         self._context = context
+        self._say = say
         self._outbox = Outbox(context.loop)
         self._tasks: set[asyncio.Task] = set()
         self._watches: dict[int, Any] = {}
@@ -231,7 +242,8 @@ class Client:
             self._refuse(number, f"{name}: {type(error).__name__}: {error}")
 
     def _refuse(self, number: Any, reason: str) -> None:
-        self._outbox.answer({"id": number, "ok": False, "error": " ".join(reason.split())})
+        line = self._say(" ".join(reason.split()))
+        self._outbox.answer({"id": number, "ok": False, "error": line})
 
     async def _do(self, name: Any, args: dict[str, Any]) -> Any:
         if name == "watch":
@@ -252,7 +264,7 @@ class Client:
             raise Refused(f"more than {MOST_AT_ONCE} things watched at once")
         number = next(self._numbers)
         watched = kind(self._context, registry.argument(args, "args", dict, {}),
-                       lambda data, keep=False: self._outbox.post(number, data, keep))
+                       lambda data, keep=False: self._outbox.post(number, self._told(data), keep))
         self._watches[number] = watched
         self._outbox.open(number)
         # Answers overtake queued events; the page keeps events that come before this answer.
@@ -265,6 +277,15 @@ class Client:
         if number not in self._watches:  # ended meanwhile, and `start` went on after `stop`
             await self._stop(watched)
         return answer
+
+    def _told(self, data: Any) -> Any:
+        """A watch's event; its error, and lists of lines, in the page's language."""
+        if not isinstance(data, dict):
+            return data
+        told = {name: [self._say(line) for line in data[name]] for name in LINES if name in data}
+        if isinstance(data.get("error"), str):
+            told["error"] = self._say(data["error"])
+        return {**data, **told} if told else data
 
     async def _unwatch(self, number: Any) -> None:
         watched = self._watches.pop(number, None) if isinstance(number, int) else None

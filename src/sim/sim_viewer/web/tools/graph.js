@@ -5,6 +5,7 @@ import { t } from "../language.js";
 import { drawGraph } from "./graph_drawing.js";
 import { panAndZoom } from "./pan_zoom.js";
 import { checkbox, choice, errorLine, toldError } from "./parts.js";
+import { showWiring } from "./wiring.js";
 
 export const title = t("Graph", "节点图");
 
@@ -16,6 +17,7 @@ const VIEWS = [
 ];
 const settings = { view: "active", quiet: true, text: "" };
 let stop = null;
+let stopWiring = null;
 
 export function mount(place, link) {
   const problem = errorLine();
@@ -49,7 +51,8 @@ export function mount(place, link) {
       timer = setTimeout(() => set("text")(filter.value.trim()), TYPING_MS);
     },
   });
-  place.append(element("div", { class: "pad tool" },
+  const wiring = element("div");
+  place.append(element("div", { class: "pad tool" }, wiring,
     element("div", { class: "row" },
       choice("graph-view", VIEWS, settings.view, set("view")),
       filter,
@@ -57,10 +60,12 @@ export function mount(place, link) {
         settings.quiet, set("quiet")),
       element("button", { text: t("whole", "全图"), onclick: () => view.fit() })),
     problem, facts, box));
+  stopWiring = showWiring(wiring, link, problem.show);
   watch();
 }
 
 export function unmount() {
   stop?.();
-  stop = null;
+  stopWiring?.();
+  stop = stopWiring = null;
 }

@@ -5,7 +5,7 @@ import { t } from "../language.js";
 import { errorLine, reveal, toldError } from "./parts.js";
 import { FilteredTable } from "./filtered_table.js";
 
-export const title = t("TF", "坐标");
+export const title = t("TF", "坐标系");
 
 const OLD = 1.0; // s; most frames come at least ten times a second
 let stop = null;

@@ -138,7 +138,7 @@ def draw(state: SystemState, view: str = "active", quiet: bool = True, text: str
     Refused if the graph is too large, or cannot be laid out.
     """
     if quiet:
-        state = _without_quiet(state, own)
+        state = without_quiet(state, own)
     flows = _flows(state)
     if text:
         flows = [flow for flow in flows if any(text in name for name in flow)]
@@ -170,10 +170,12 @@ def _flows(state: SystemState) -> list[Flow]:
     return found
 
 
-def _without_quiet(state: SystemState, own: str) -> SystemState:
+def without_quiet(state: SystemState, own: str,
+                  quiet: tuple[str, ...] = QUIET_NODES) -> SystemState:
+    """The state without this page's nodes, those that begin as `quiet`, and usual topics."""
     def filtered(part: dict[str, list[str]]) -> dict[str, list[str]]:
         kept = {name: [node for node in nodes
-                       if node not in (own, own + GUARD) and not node.startswith(QUIET_NODES)]
+                       if node not in (own, own + GUARD) and not node.startswith(quiet)]
                 for name, nodes in part.items()
                 if name not in QUIET_TOPICS and not name.endswith(QUIET_ENDINGS)}
         return {name: nodes for name, nodes in kept.items() if nodes}

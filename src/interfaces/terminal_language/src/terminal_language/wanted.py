@@ -23,7 +23,7 @@ def wanted_language(environment: dict[str, str]) -> str | None:
 def home() -> str:
     """The folder that our programs lie in: this repository, or where its Debian package put it."""
     here = os.path.dirname(os.path.realpath(__file__))
-    for folder in ("/src/compat/", "/lib/python3/dist-packages/"):
+    for folder in ("/src/interfaces/", "/lib/python3/dist-packages/"):
         before, found, _ = here.rpartition(folder)
         if found:
             return before

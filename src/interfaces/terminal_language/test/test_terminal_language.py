@@ -15,7 +15,7 @@ from terminal_language.streams import TranslatedStream
 from terminal_language.wanted import home, is_ours, wanted_language
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1] / "src"
-START = SOURCE.parents[1] / "python_amendments/src"  # has usercustomize.py
+START = SOURCE.parents[2] / "compat/python_amendments/src"  # has usercustomize.py
 CATALOGUE = Catalogue({
     "": "header", "the line is lost": "线丢了", "no such file": "没有这个文件",
     "{0} has no {1}": "{0} 没有{1}", "{0} has no joint called {1}": "{0} 没有名为 {1} 的关节",
@@ -221,7 +221,7 @@ def test_a_catalogue_is_read_once():
     ("A simulator runs already on this master (world course, started 3 min ago). End it with "
      "Ctrl-C in its terminal, then type this again.", "世界 course，3 分钟前启动"),
     ("rviz has no window here; the page in the browser does its work, tab RViz. Type: roslaunch",
-     "浏览器页面的 RViz 标签页"),
+     "浏览器页面的“RViz”标签页"),
     ("line 1: it ends as lines do on Windows, so that no interpreter is found; type: sed x",
      "行尾是 Windows 的换行符，因此找不到解释器；请输入：sed x"),
     ("[1/1] anna/0-1: 0 points, fault; lost 100 points: the program ended (exit code 1): "

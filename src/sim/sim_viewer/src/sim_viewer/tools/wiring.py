@@ -1,0 +1,71 @@
+"""Who talks to whom: a robot's inputs and sensors, and what is wrong there, in plain sentences."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import rospy
+
+from bullet_sim_ros.topic_faults import COMMANDS, SENSORS, Graph, unheard, unseen
+from sim_viewer.registry import watchable
+from sim_viewer.tools.graph import without_quiet
+from sim_viewer.tools.master import SystemState, simulator_name
+from sim_viewer.tools.paced import Paced
+
+DRIVES = COMMANDS | {"ackermann_msgs/AckermannDriveStamped"}
+LOOKERS = ("/rosout", "/rqt_", "/rviz")  # nodes that belong to no robot's program
+MOST_LINES = 30
+UNHEARD = frozenset(["/tf", "/tf_static"])  # by nobody: as often as not
+
+
+@watchable("wiring")
+class Wiring(Paced):
+    """Sends what `describe` returns."""
+
+    PERIOD = 1.0
+
+    def collect(self) -> Any:
+        return self.changed(describe(self.master.state(), self.master.types(), rospy.get_name()))
+
+
+def describe(state: SystemState, types: dict[str, str], own: str) -> dict[str, Any]:
+    """`{rows: [{name, type, part, from, to}], faults: [line], loose: [line]}`; this page is `own`.
+
+    A row is a topic of commands that somebody hears (`part` is `input`) or a sensor's that somebody
+    sends; `from` and `to` are nodes without this page's. `loose` are other topics with one end.
+    """
+    simulator = simulator_name(state)
+    seen = without_quiet(state, own, LOOKERS)
+    graph = Graph(seen.publishers, seen.subscribers, types)
+    rows = [{"name": topic, "type": types.get(topic, ""), "part": part,
+             "from": graph.publishers.get(topic, []), "to": graph.subscribers.get(topic, [])}
+            for part, kinds, ends in (("input", DRIVES, graph.subscribers),
+                                      ("sensor", SENSORS, graph.publishers))
+            for topic in sorted(ends) if types.get(topic) in kinds]
+    faults = [*_rivals(rows), *(fault.text % fault.values for fault in (
+        *unheard(graph, simulator), *unseen(graph, simulator)))]
+    return {"rows": rows, "faults": faults[:MOST_LINES],
+            "loose": list(_loose(graph, simulator))[:MOST_LINES]}
+
+
+def _rivals(rows: list[dict[str, Any]]) -> Iterator[str]:
+    for row in rows:
+        if row["part"] == "input" and len(row["from"]) > 1:
+            yield (f"{', '.join(row['from'])} may all send commands on {row['name']}; while they "
+                   "do, the robot follows now one, now the other: end all but one (Ctrl-C in its "
+                   "terminal, or rosnode kill)")
+
+
+def _loose(graph: Graph, simulator: str) -> Iterator[str]:
+    """Topics with one end, of others than the simulator, that the simulator's rules do not name."""
+    for topic, nodes in sorted(graph.subscribers.items()):
+        nodes = [node for node in nodes if node != simulator]
+        kind = graph.types.get(topic)
+        if nodes and topic not in graph.publishers and kind not in SENSORS:
+            alike = sorted(other for other in graph.publishers if graph.types.get(other) == kind)
+            meant = f"; of this type there are: {', '.join(alike)}" if alike and kind else ""
+            yield f"{', '.join(nodes)} waits for {topic}, which nobody sends{meant}"
+    for topic, nodes in sorted(graph.publishers.items()):
+        nodes = [node for node in nodes if node != simulator]
+        if (nodes and topic not in graph.subscribers and topic not in UNHEARD
+                and graph.types.get(topic) not in DRIVES):
+            yield f"{', '.join(nodes)} sends {topic}, which nobody hears"
