@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import errno
 import json
 import os
 import re
@@ -28,6 +29,8 @@ TOOL = ROOT / "tools/lab"
 LIMIT = 180.0  # s
 SCRIPTS = "src/my_lessons/scripts/learning_topic"
 sys.path.append(str(ROOT / "src/sim/sim_viewer/test"))
+sys.path.append(str(TOOL))
+import folder  # noqa: E402
 
 
 def free_port() -> int:
@@ -256,6 +259,31 @@ def test_the_pages_are_read_only_and_ours_are_not_in_reach(lab):
     assert not [path for path in (lab.ws / "src").rglob("*")
                 if path.is_symlink() and ROOT in path.resolve().parents
                 and path.name != "CMakeLists.txt"]
+
+
+def test_a_full_disk_leaves_no_half_of_a_lesson(tmp_path, monkeypatch):
+    own = folder.Folder(tmp_path)
+    (own.package / "devel").mkdir(parents=True)
+    (own.package / "package.xml").touch()
+
+    def half(source, target):
+        Path(target).write_text(Path(source).read_text()[:10])
+        raise OSError(errno.ENOSPC, "No space left on device", str(target))
+
+    with monkeypatch.context() as disk, pytest.raises(OSError, match="No space"):
+        disk.setattr(folder.shutil, "copy", half)
+        own.fill()
+    assert not [path for path in own.package.rglob("*.py*") if path.is_file()]
+
+
+def test_a_second_reset_keeps_what_the_first_one_kept(tmp_path, monkeypatch):
+    own, name = folder.Folder(tmp_path), "05follower_proporation.py"
+    monkeypatch.setattr(folder.time, "strftime", lambda _format: "20260101-120000")
+    file = tmp_path / SCRIPTS / name
+    file.parent.mkdir(parents=True)
+    file.write_text("mine\n")
+    first, second = own.reset(file), own.reset(file)
+    assert first.read_text() == "mine\n" and second != first
 
 
 def refused(*words: str) -> str:

@@ -8,11 +8,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import fcntl
 import os
 import shutil
 import subprocess
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any
 
@@ -98,12 +100,13 @@ class Folder:
             copy = self.package / name
             if not copy.exists():
                 copy.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(source, copy)
+                _copy(source, copy)
         follow = self.package / "launch" / FOLLOW.name
         if not follow.exists():
             follow.parent.mkdir(exist_ok=True)
-            follow.write_text(FOLLOW.read_text("utf-8").replace(
-                'pkg="learning_topic"', f'pkg="{PACKAGE}"'), "utf-8")
+            with _replacing(follow) as fresh:
+                fresh.write_text(FOLLOW.read_text("utf-8").replace(
+                    'pkg="learning_topic"', f'pkg="{PACKAGE}"'), "utf-8")
         if not (self.path / "devel/setup.bash").exists():
             self._run("catkin_make", folder=self.path)
         self._copy_pages()
@@ -117,8 +120,7 @@ class Folder:
                     if copy.exists() and copy.stat().st_mtime >= page.stat().st_mtime:
                         continue
                     copy.parent.mkdir(parents=True, exist_ok=True)
-                    copy.unlink(missing_ok=True)
-                    shutil.copy(page, copy)
+                    _copy(page, copy)
                     copy.chmod(0o444)
 
     def reset(self, path: Path) -> Path:
@@ -131,11 +133,11 @@ class Folder:
         if source is None:
             raise LabError(f"{path} is no copy of a lesson's file: there is nothing to reset it to")
         kept = file.with_name(f"{file.name}.{time.strftime('%Y%m%d-%H%M%S')}")
+        while kept.exists():  # a double click: what was kept a moment ago is the learner's
+            kept = kept.with_name(f"{kept.name}-again")
         if file.exists():
             shutil.copy(file, kept)  # before anything changes, should the disk be full
-        fresh = file.with_name(f".{file.name}.new")
-        shutil.copy(source, fresh)
-        fresh.replace(file)
+        _copy(source, file)
         return kept
 
     def _run(self, *command: str, folder: Path) -> None:
@@ -145,3 +147,19 @@ class Folder:
             log = self.state / "build.log"
             log.write_text(done.stdout + done.stderr, "utf-8")
             raise LabError(f"{command[0]} failed in {folder}; its output is in {log}")
+
+
+@contextlib.contextmanager
+def _replacing(file: Path) -> Iterator[Path]:
+    """Where to write a file that is whole or not there at all, should the disk be full."""
+    fresh = file.with_name(f".{file.name}.new")
+    try:
+        yield fresh
+        fresh.replace(file)
+    finally:
+        fresh.unlink(missing_ok=True)
+
+
+def _copy(source: Path, file: Path) -> None:
+    with _replacing(file) as fresh:
+        shutil.copy(source, fresh)
