@@ -15,6 +15,7 @@ import time
 import urllib.error
 import urllib.parse
 import urllib.request
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -339,6 +340,15 @@ def test_what_cannot_be_is_one_line(lab, tmp_path):
     (tmp_path / "file").write_text("")
     assert "cannot be written by you" in refused("--ws", str(tmp_path / "file"))
     assert not (tmp_path / "a").exists()
+
+
+def test_two_labs_that_start_at_once_find_a_port_each(tmp_path):
+    with ThreadPoolExecutor() as pool:
+        labs = list(pool.map(lambda name: started(tmp_path / name), "ab"))
+    try:
+        assert labs[0].base != labs[1].base
+    finally:
+        assert [ended(one) for one in labs] == [0, 0]
 
 
 def test_two_labs_never_meet(lab, tmp_path):

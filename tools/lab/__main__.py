@@ -48,7 +48,7 @@ class Lab:
         self._folder, self._language = folder, language
         self._children: list[tuple[str, subprocess.Popen]] = []
 
-    def start(self, port: int, browser: bool) -> str:
+    def start(self, wished: int | None, browser: bool) -> str:
         """Start all; returns the address with the token. LabError or RunError if one fails."""
         master, page_token = self._start_master(), secrets.token_urlsafe(24)
         env = {"ROS_MASTER_URI": master, "ROS_HOSTNAME": "localhost"}
@@ -56,11 +56,21 @@ class Lab:
                   f"port:={free_port(PAGE_PORT)}", env=env | {TOKEN: page_token})
         self._folder.fill()  # while the page starts
         page_port = int(self._wait("page", lambda: _page_url(master)).rstrip("/").split(":")[-1])
-        token = secrets.token_urlsafe(24)
-        config = write_settings(self._folder, self._language, port, token, page_port, page_token,
-                                browser)
         write_terminal(self._folder, master)
         lay_out(self._folder, self._language)
+        while True:
+            port, token = choose_port(wished), secrets.token_urlsafe(24)
+            config = write_settings(self._folder, self._language, port, token, page_port,
+                                    page_token, browser)
+            try:
+                self._start_jupyter(config, env, port, token)
+                return f"http://127.0.0.1:{port}/lab?token={token}"
+            except LabError:
+                if wished is not None or free_port(port) == port:
+                    raise
+                self._children.pop()  # another lab that starts was there first
+
+    def _start_jupyter(self, config: Path, env: dict[str, str], port: int, token: str) -> None:
         state = self._folder.state
         self._run("jupyter", sys.executable, "-m", "jupyterlab", f"--config={config}",
                   env=env | {"LAB_LANGUAGE": self._language, "PYTHONPATH": os.pathsep.join(
@@ -70,7 +80,6 @@ class Lab:
                       "JUPYTER_RUNTIME_DIR": str(state / "runtime"),
                       "IPYTHONDIR": str(state / "ipython")})
         self._wait("jupyter", lambda: _answers(port, token))
-        return f"http://127.0.0.1:{port}/lab?token={token}"
 
     def wait(self) -> str:
         """Until one of them ends; its name."""
@@ -181,11 +190,11 @@ def main() -> int:
         if given.reset:
             print(f"lab: reset; your version is kept as {folder.reset(Path(given.reset))}")
             return 0
-        port = choose_port(given.port)
+        choose_port(given.port)  # before anything is made
         with folder.take() as lock:
             try:
                 print(f"The lab is starting; your files are in {folder.package}", flush=True)
-                url = lab.start(port, _has_browser())
+                url = lab.start(given.port, _has_browser())
                 lock.write(url)
                 lock.flush()
                 print(f"lab: {url}\nOpen this address in a browser. Ctrl-C ends the lab; your "
