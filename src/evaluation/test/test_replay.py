@@ -70,6 +70,13 @@ def test_another_version_s_log(said, out):
     assert "was written by version 0.1, this is" in line
 
 
+def test_a_log_that_was_not_written_by_make(said, out):
+    (out / RUN_LOG).write_bytes(part([head(), *LINES, ["end"]]))
+    assert said("--run", out) == (2, (
+        f"replay: {out}/run.log.gz does not say how its run was started (words): only runs of make "
+        "course, race, track, lane and avoid can be gone back to\n"))
+
+
 def test_what_is_no_log(said, out):
     (out / "hall-3.run.log.gz").write_bytes(gzip.compress(b"nothing"))
     assert said("--run", out / "hall-3") == (2, (

@@ -11,6 +11,7 @@ import pytest
 from replay_seeds import SCRIPTS, drive, go_back
 
 from bullet_sim.formats.run_log import read_run_log
+from evaluation.replay import NEW
 
 pytestmark = pytest.mark.processes
 LIMIT = 300.0  # s, wall
@@ -91,7 +92,7 @@ def test_who_drives_on_from_an_image_with_the_same_program_drives_the_same(tmp_p
             said = replay.wait_for("go")
         second = tmp_path / "replay" / "run.log.gz"
         until = time.monotonic() + LIMIT
-        while len(read_run_log(second).images) < 100:
+        while len(read_run_log(second.with_name(NEW)).images) < 100:
             assert time.monotonic() < until
             time.sleep(0.2)
         replay.type("q")
@@ -104,3 +105,8 @@ def test_who_drives_on_from_an_image_with_the_same_program_drives_the_same(tmp_p
     images = read_run_log(second).images
     count = min(len(images), len(first.images))
     assert count >= 100 and images[:count] == first.images[:count]
+    # To look at it again, or at another run, is not to lose it.
+    for run in (second, path):
+        assert "image 30 of " in go_back(run, "1.0", second.parent)
+    assert read_run_log(second).images == images
+    assert sorted(each.name for each in second.parent.iterdir()) == ["log", "run.log.gz"]

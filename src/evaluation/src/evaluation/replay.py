@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import queue
+import shutil
 import sys
 import threading
 import time
@@ -26,7 +28,7 @@ from run_session.failure import RunError
 from run_session.launch import Launched
 from run_session.master import look_up
 from run_session.observer import missing_controller
-from run_session.session import Session
+from run_session.session import LOG, Session
 
 PROGRAM = "replay"
 START_LIMIT = 300.0  # s, wall; as long as a run's start may take
@@ -35,6 +37,8 @@ LOOK_PERIOD = 0.1  # s, wall
 HELP = ("n: the next image; p: the previous one; 12.5, lost, lap, image:700 ...: there; "
         "go: drive on; q: end")
 GO_TO_IMAGE = "/gazebo/go_to_image"
+NEW = "new.run.log.gz"  # of the world that is gone back to, as long as it runs
+OF = ("words", "driver", "sensor", "commands", "controllers", "environment")
 
 
 class NotThere(Exception):
@@ -104,8 +108,10 @@ class Replay:
         rospy.init_node(PROGRAM, anonymous=False, disable_signals=True, disable_rosout=True)
         for name, word in (("next_image", "n"), ("previous_image", "p")):
             rospy.Service(f"~{name}", Trigger, lambda _request, word=word: self._wait_for(word))
-        rospy.set_param("/gazebo/replay", str(self._path.resolve()))
-        begin_run_log(launched.master_uri, self._session.out / RUN_LOG, **self._of)
+        # A copy: `keep` may move the log itself.
+        replayed = shutil.copy(self._path, self._session.out / LOG / RUN_LOG)
+        rospy.set_param("/gazebo/replay", str(replayed))
+        begin_run_log(launched.master_uri, self._session.out / NEW, **self._of)
         if page is not None:
             launched.start("viewer", ["roslaunch", "sim_viewer", "viewer.launch", *page])
             launched.wait_for("the page in the browser",
@@ -113,6 +119,20 @@ class Replay:
             self._say(f"the page in the browser: {rospy.get_param('/sim_viewer/url')}")
         self._say("another terminal joins by: source devel/setup.bash; export "
                   f"ROS_MASTER_URI={launched.master_uri}")
+
+    def keep(self) -> None:
+        """Once the world has ended: its log becomes the folder's, if it has gone on by itself."""
+        new, kept = self._session.out / NEW, self._session.out / RUN_LOG
+        try:
+            went_on = 0 < self._image <= len(read_run_log(new).images)
+        except (OSError, RunLogError):  # there was no world, or no room
+            went_on = False
+        if not went_on:
+            new.unlink(missing_ok=True)
+            return
+        if kept.exists():
+            kept.replace(kept.with_name(EARLIER))
+        new.replace(kept)
 
     def go_to(self, number: int) -> None:
         """Bring a world to the image; NotThere if it is not as in the run."""
@@ -209,6 +229,7 @@ class Replay:
         launched = self._launched
         if self._world is not None:
             launched.end(self._world)
+            self.keep()
         self._image, self._on_log = 0, False
         self._world = launched.start("roslaunch", [
             sys.executable, "-m", "evaluation.launch_without", self._of["driver"],
@@ -273,11 +294,15 @@ def run(arguments: Sequence[str]) -> int:
     except RunLogError as error:
         raise RunError(str(error)) from None
     number, said = image_of(log, path, options.at)
-    if path.resolve() == (options.out / RUN_LOG).resolve():  # where this run's log goes
-        path = path.rename(path.with_name(EARLIER))
+    if missing := [name for name in OF if name not in log.header.get("run", {})]:
+        raise RunError(f"{path} does not say how its run was started ({missing[0]}): only runs of "
+                       "make course, race, track, lane and avoid can be gone back to")
     page = [f"port:={options.port}", f"control:={str(options.control).lower()}"]
-    with results_folder(PROGRAM, options.out.resolve()), Session(options.out.resolve()) as session:
+    out = options.out.resolve()
+    with (results_folder(PROGRAM, out), contextlib.ExitStack() as ended,
+          Session(out) as session):
         replay = Replay(session, path, log)
+        ended.callback(replay.keep)
         if said:
             session.progress.say(said)
         replay.open(None if options.once else page)
