@@ -91,6 +91,8 @@ def newest_map():
     try:
         return rospy.wait_for_message("map", OccupancyGrid, SOON)
     except rospy.ROSException:
+        if rospy.is_shutdown():  # Ctrl-C meanwhile  此时按了 Ctrl-C
+            sys.exit("stopped before the goal was sent")
         return None
 
 

@@ -73,6 +73,16 @@ def test_ctrl_c_before_there_is_a_clock_asks_nobody_any_more(script, monkeypatch
         script.main()
 
 
+def test_ctrl_c_while_the_map_is_waited_for_sends_no_goal(script, monkeypatch):
+    def interrupted(*_):
+        raise script.rospy.ROSInterruptException("rospy shutdown")
+
+    monkeypatch.setattr(script.rospy, "wait_for_message", interrupted)
+    monkeypatch.setattr(script.rospy, "is_shutdown", lambda: True)
+    with pytest.raises(SystemExit, match=r"^stopped before the goal was sent$"):
+        script.refuse_at_once(1, 2)
+
+
 def test_ctrl_c_on_the_way_says_that_the_goal_is_cancelled(script, monkeypatch):
     """Not move_base's text of when the goal was accepted."""
     is_over = []
