@@ -37,6 +37,7 @@ class MotorControl:
             for name in controller_commands(settings, self.sent)
         }
         self.stopped = rospy.Publisher("estop_state", Bool, queue_size=1, latch=True)
+        self.stopped.publish(self.motor.emergency)  # to who knows an earlier motor_control's
         callbacks = {
             "motor_output": (Twist, self.take_twist),
             "ackermann_cmd": (AckermannDriveStamped, self.take_ackermann),

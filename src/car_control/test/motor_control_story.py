@@ -124,6 +124,14 @@ class MotorControlStory(unittest.TestCase):
         wait_until(self.car.stand, "standing: no command that counts comes any more")
         self.assertEqual({value for _when, _name, value in self.car.told}, {0.0, 20.0})
 
+    def test_one_that_starts_says_that_there_is_no_emergency_stop(self):
+        node = subprocess.Popen([*NODE, "__ns:=fresh"])
+        try:
+            self.assertFalse(rospy.wait_for_message("/fresh/estop_state", Bool, LIMIT).data)
+        finally:
+            node.terminate()
+            node.wait()
+
     def test_emergency_stop_wins_until_it_is_over(self):
         self.twists.message = twist(2.0)
         self.car.wait_for_speed(2.0, "driving")
