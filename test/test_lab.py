@@ -79,7 +79,9 @@ class Lab:
         return self.ask("/courses/do", {"act": act, "what": what})
 
     def shown(self, terminal: str, pattern: str) -> str:
-        """The terminal's text, once the pattern is in it."""
+        """The terminal's text, once it is there and the pattern is in it."""
+        wait_until(lambda: any(each["name"] == terminal for each in self.ask("/api/terminals")[1]),
+                   f"terminal {terminal}")
         return asyncio.run(self._shown(terminal, pattern))
 
     async def _shown(self, terminal: str, pattern: str) -> str:
