@@ -271,11 +271,12 @@ def test_a_full_disk_leaves_no_half_of_a_lesson(tmp_path, monkeypatch):
 
     def half(source, target):
         Path(target).write_text(Path(source).read_text()[:10])
-        raise OSError(errno.ENOSPC, "No space left on device", str(target))
+        raise OSError(errno.ENOSPC, "No space left on device", str(source))
 
-    with monkeypatch.context() as disk, pytest.raises(OSError, match="No space"):
+    with monkeypatch.context() as disk, pytest.raises(OSError, match="No space") as full:
         disk.setattr(folder.shutil, "copy", half)
         own.fill()
+    assert full.value.filename.startswith(str(own.package))  # where there is to be room
     assert not [path for path in own.package.rglob("*.py*") if path.is_file()]
 
 

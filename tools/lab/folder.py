@@ -136,7 +136,7 @@ class Folder:
         while kept.exists():  # a double click: what was kept a moment ago is the learner's
             kept = kept.with_name(f"{kept.name}-again")
         if file.exists():
-            shutil.copy(file, kept)  # before anything changes, should the disk be full
+            _copy(file, kept)  # before anything changes, should the disk be full
         _copy(source, file)
         return kept
 
@@ -156,6 +156,8 @@ def _replacing(file: Path) -> Iterator[Path]:
     try:
         yield fresh
         fresh.replace(file)
+    except OSError as error:  # shutil names the file that was read
+        raise OSError(error.errno, error.strerror, str(file)) from error
     finally:
         fresh.unlink(missing_ok=True)
 
