@@ -62,3 +62,9 @@ def test_other_topics_with_one_end_are_loose():
     assert found["loose"] == [
         "/follower waits for /lines, which nobody sends; of this type there are: /line",
         "/finder sends /line, which nobody hears"]
+
+
+def test_commands_that_nobody_hears_are_loose_while_another_node_drives():
+    found = told([("/cmd_vel", "/follower"), ("/vel", "/teleop")])
+    assert found["faults"] == []
+    assert found["loose"] == ["/teleop sends /vel, which nobody hears"]

@@ -1,6 +1,6 @@
 """Who talks to whom: a robot's inputs and sensors, and what is wrong there, in plain sentences."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Any
 
 import rospy
@@ -41,10 +41,11 @@ def describe(state: SystemState, types: dict[str, str], own: str) -> dict[str, A
             for part, kinds, ends in (("input", DRIVES, graph.subscribers),
                                       ("sensor", SENSORS, graph.publishers))
             for topic in sorted(ends) if types.get(topic) in kinds]
-    faults = [*_rivals(rows), *(fault.text % fault.values for fault in (
-        *unheard(graph, simulator), *unseen(graph, simulator)))]
+    found = [*unheard(graph, simulator), *unseen(graph, simulator)]
+    faults = [*_rivals(rows), *(fault.text % fault.values for fault in found)]
+    named = {topic for _which, topic, *_nodes in (fault.key for fault in found)}
     return {"rows": rows, "faults": faults[:MOST_LINES],
-            "loose": list(_loose(graph, simulator))[:MOST_LINES]}
+            "loose": list(_loose(graph, simulator, named))[:MOST_LINES]}
 
 
 def _rivals(rows: list[dict[str, Any]]) -> Iterator[str]:
@@ -55,17 +56,16 @@ def _rivals(rows: list[dict[str, Any]]) -> Iterator[str]:
                    "terminal, or rosnode kill)")
 
 
-def _loose(graph: Graph, simulator: str) -> Iterator[str]:
-    """Topics with one end, of others than the simulator, that the simulator's rules do not name."""
+def _loose(graph: Graph, simulator: str, named: Collection[str]) -> Iterator[str]:
+    """Topics with one end, of others than the simulator, without those that are named already."""
     for topic, nodes in sorted(graph.subscribers.items()):
         nodes = [node for node in nodes if node != simulator]
         kind = graph.types.get(topic)
-        if nodes and topic not in graph.publishers and kind not in SENSORS:
+        if nodes and topic not in graph.publishers and topic not in named:
             alike = sorted(other for other in graph.publishers if graph.types.get(other) == kind)
             meant = f"; of this type there are: {', '.join(alike)}" if alike and kind else ""
             yield f"{', '.join(nodes)} waits for {topic}, which nobody sends{meant}"
     for topic, nodes in sorted(graph.publishers.items()):
         nodes = [node for node in nodes if node != simulator]
-        if (nodes and topic not in graph.subscribers and topic not in UNHEARD
-                and graph.types.get(topic) not in DRIVES):
+        if nodes and topic not in graph.subscribers and topic not in named | UNHEARD:
             yield f"{', '.join(nodes)} sends {topic}, which nobody hears"
