@@ -52,6 +52,9 @@ def test_a_run_in_real_time_has_a_film(said, out, films, hint):
 @pytest.mark.parametrize(("lines", "at", "line"), [
     ([*LINES, ["end"]], "image:3", "the log has no image:3; there are image:1 to image:2"),
     ([*LINES, ["end"]], "7", "the log has no image at 7 s; its last one is at 0.067 s"),
+    (LINES, "image:0", "the log has no image:0; there are image:1 to image:2"),
+    (LINES, "0.x", "the log has no mark '0.x'; there are: none; or name a time in s, image:N or "
+                   "end"),
     (LINES, "lost", "the log has no mark 'lost'; there are: none; or name a time in s, image:N or "
                     "end"),
     ([], "end", "the log has no image: the run ended before the first one"),

@@ -18,7 +18,7 @@ import rospy
 from controller_manager_msgs.srv import ListControllers
 from std_srvs.srv import Empty, Trigger, TriggerRequest, TriggerResponse
 
-from bullet_sim.formats.run_log import RunLog, RunLogError, read_run_log
+from bullet_sim.formats.run_log import PastEnd, RunLog, RunLogError, read_run_log
 from evaluation.command_line import NOT_PASSED, PASSED, Parser, results_folder, run_program
 from evaluation.launch_without import LEFT_OUT
 from evaluation.run_log import EARLIER, RUN_LOG, begin_run_log
@@ -77,7 +77,7 @@ def image_of(log: RunLog, path: Path, at: str) -> tuple[int, str]:
     try:
         number = log.find(at)
     except RunLogError as error:
-        if log.whole or not log.images or not at.removeprefix("image:")[:1].isdigit():
+        if log.whole or not isinstance(error, PastEnd):
             raise RunError(f"{path}: {error}") from None
         number = len(log.images)
         said = f"the log was cut short: it ends at image {number}, which is gone to"

@@ -34,6 +34,10 @@ class RunLogError(SimulationError):
     """A log that cannot be used, or has not what is asked for; one line."""
 
 
+class PastEnd(RunLogError):
+    """An image or a time after the last one."""
+
+
 class Event(NamedTuple):
     """A line that the physics has to do with, at its step."""
 
@@ -78,7 +82,7 @@ class RunLog:
     def find(self, at: str) -> int:
         """Number of an image: `image:700`, a simulated time in s, the end, or a mark (`lap:2`).
 
-        RunLogError if there is none, with what there is.
+        RunLogError if there is none, with what there is; PastEnd if it would be after the end.
         """
         images = self.images
         if not images:
@@ -86,9 +90,11 @@ class RunLog:
         last, end = len(images), self.time_of(images[-1])
         word, _, number = at.partition(":")
         if word == "image":
-            if number.isascii() and number.isdecimal() and 1 <= int(number) <= last:
+            is_number = number.isascii() and number.isdecimal()
+            if is_number and 1 <= int(number) <= last:
                 return int(number)
-            raise RunLogError(f"the log has no {at}; there are image:1 to image:{last}")
+            kind = PastEnd if is_number and int(number) > last else RunLogError
+            raise kind(f"the log has no {at}; there are image:1 to image:{last}")
         if at == "end":
             return last
         try:
@@ -96,7 +102,8 @@ class RunLog:
         except ValueError:
             return self._marked(word, number, at)
         if not 0 <= time <= end + SLACK:
-            raise RunLogError(f"the log has no image at {at} s; its last one is at {end:.3f} s")
+            kind = PastEnd if time > end else RunLogError
+            raise kind(f"the log has no image at {at} s; its last one is at {end:.3f} s")
         return self.image_at(time)
 
     def _marked(self, word: str, number: str, at: str) -> int:
