@@ -55,7 +55,7 @@ def ask(path: Path) -> None:
 
 async def _answers(text: str) -> list[str]:
     node = Node(Options(control=True, bags="/proc/none"), asyncio.get_running_loop())
-    client = hub.Client(None, Context(node, 1))
+    client = hub.Client(None, Context(node, 1), hub.speaker("zh_CN"))
     client._take(text)
     await asyncio.wait([*client._tasks, asyncio.ensure_future(asyncio.sleep(0))], timeout=PATIENCE)
     answers = list(client._outbox._answers)

@@ -2,6 +2,7 @@
 """lane_follow, its baseline and show.py before a drawn road: commands, stops, windows."""
 
 import math
+import os
 import signal
 import subprocess
 import sys
@@ -124,7 +125,7 @@ class LaneFollowStory(unittest.TestCase):
         node = subprocess.Popen(
             ["rosrun", "car_control", "lane_follow.py", "__ns:=held", "__name:=follow",
              "camera/image_raw:=/camera/image_raw"], text=True, stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT)
+            stderr=subprocess.STDOUT, env={**os.environ, "PYTHONUNBUFFERED": "1"})
         try:
             lines = (line for line in node.stdout if "emergency stop" in line)
             line = next(lines)

@@ -80,7 +80,7 @@ def test_who_drives_on_from_an_image_with_the_same_program_drives_the_same(tmp_p
         replay.type("lost")
         replay.wait_for("the log has no mark 'lost'")
         replay.type("go")
-        said = replay.wait_for("no program sends /cmd_vel yet: in another terminal, start the ")
+        said = replay.wait_for("no program sends /cmd_vel: in another terminal, start the ")
         assert "such as rosrun learning_topic 07follower_ground.py; then type go again" in said
         joined = replay.lines[[" ROS_MASTER_URI=" in line for line in replay.lines].index(True)]
         uri = joined.partition("ROS_MASTER_URI=")[2].partition(";")[0]
@@ -102,7 +102,9 @@ def test_who_drives_on_from_an_image_with_the_same_program_drives_the_same(tmp_p
         if follower is not None:
             follower.terminate()
             follower.wait(60)
-    images = read_run_log(second).images
+    driven_on = read_run_log(second)
+    assert not [event for event in driven_on.events if event.kind == "lacks"]
+    images = driven_on.images
     count = min(len(images), len(first.images))
     assert count >= 100 and images[:count] == first.images[:count]
     # To look at it again, or at another run, is not to lose it.

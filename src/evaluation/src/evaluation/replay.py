@@ -34,8 +34,7 @@ PROGRAM = "replay"
 START_LIMIT = 300.0  # s, wall; as long as a run's start may take
 REPLAY_LIMIT = 3600.0  # s, wall
 LOOK_PERIOD = 0.1  # s, wall
-HELP = ("n: the next image; p: the previous one; 12.5, lost, lap, image:700 ...: there; "
-        "go: drive on; q: end")
+COMMANDS = ("n", "p", "go", "q", "help")
 GO_TO_IMAGE = "/gazebo/go_to_image"
 NEW = "new.run.log.gz"  # of the world that is gone back to, as long as it runs
 OF = ("words", "driver", "sensor", "commands", "controllers", "environment")
@@ -153,7 +152,7 @@ class Replay:
 
     def stay(self) -> None:
         """Carry out commands until q or Ctrl-C."""
-        self._say(HELP)
+        self._say(self._help())
         threading.Thread(target=self._read, daemon=True).start()
         while True:
             self._launched.check(None)
@@ -173,6 +172,8 @@ class Replay:
     def _carry_out(self, word: str) -> str:
         if word == "go":
             return self._drive_on()
+        if word == "help":
+            return self._help()
         number, said = {"n": (self._image + 1, ""), "p": (self._image - 1, "")}.get(word) or \
             image_of(self._log, self._path, word)
         if not 1 <= number <= len(self._log.images):
@@ -181,6 +182,12 @@ class Replay:
             raise RunError("the world goes on by itself; p or a time goes back into the run")
         self.go_to(number)
         return said
+
+    def _help(self) -> str:
+        marks = dict.fromkeys(mark.name for mark in self._log.marks)
+        there = ", ".join(["12.5", "image:700", *marks, "end"])
+        return (f"n: the next image; p: the previous one; {there}: there; go: drive on; q: end; "
+                "help: this line")
 
     def _drive_on(self) -> str:
         """Unpause, once a program is connected; the world then waits for its answers."""
@@ -198,9 +205,9 @@ class Replay:
         except (OSError, xmlrpc.client.Error, rosgraph.MasterException) as error:
             return f"the ROS master does not answer ({error})"
         if not found.publishers[commands] - {"/sim_viewer"}:
-            return f"no program sends {commands} yet"
+            return f"no program sends {commands}"
         if not found.subscribers[sensor] - {"/sim_viewer"}:
-            return f"no program reads {sensor} yet"
+            return f"no program reads {sensor}"
         return found.missing_link(sensor) or found.missing_link(commands)
 
     def _driver(self) -> str:
@@ -221,7 +228,10 @@ class Replay:
                 self._say(line)
         for line in sys.stdin:
             if word := line.strip():
-                self._orders.put(Order(word, say))
+                command = word.lower()
+                self._orders.put(Order(command if command in COMMANDS else word, say))
+        if sys.stdin.isatty():  # Ctrl-D
+            self._orders.put(Order("q", say))
 
     # --- the simulator
 

@@ -64,7 +64,15 @@ def test_other_topics_with_one_end_are_loose():
         "/finder sends /line, which nobody hears"]
 
 
-def test_commands_that_nobody_hears_are_loose_while_another_node_drives():
+def test_commands_that_nobody_hears_are_a_fault_also_while_another_node_drives():
     found = told([("/cmd_vel", "/follower"), ("/vel", "/teleop")])
-    assert found["faults"] == []
-    assert found["loose"] == ["/teleop sends /vel, which nobody hears"]
+    assert found["loose"] == []
+    assert found["faults"] == ["/teleop sends commands on /vel, but nobody hears them there; "
+                               "the robot listens on /cmd_vel"]
+
+
+def test_a_programs_window_is_no_sensor_and_odometry_is_one():
+    window, odom = "/follower/windows/mask", "/odom"
+    TYPES.update({window: IMAGE, odom: "nav_msgs/Odometry"})
+    rows = {row["name"] for row in told([(window, "/follower"), (odom, "/gazebo")])["rows"]}
+    assert odom in rows and window not in rows

@@ -63,12 +63,14 @@ class ToolsPage(unittest.TestCase):
               .includes({json.dumps(rospy.get_name())})""")
 
     def test_a_window_of_opencv_is_shown_beside_the_camera_when_it_appears(self):
+        shown = "!!document.querySelector('figure[data-topic=\"%s\"]')"
         self.open("cameras")
-        for topic in ("/camera/image_raw", "/finder/windows/mask"):
-            sender = rospy.Publisher(topic, Image, queue_size=1, latch=True)
-            self.addCleanup(sender.unregister)
-            sender.publish(Image(height=2, width=2, step=2, encoding="mono8", data=bytes(4)))
-            self.page.wait_for(f"!!document.querySelector('figure[data-topic=\"{topic}\"]')")
+        self.page.wait_for(shown % "/turtlesim/image")
+        window = rospy.Publisher("/finder/windows/mask", Image, queue_size=1, latch=True)
+        self.addCleanup(window.unregister)
+        window.publish(Image(height=2, width=2, step=2, encoding="mono8", data=bytes(4)))
+        self.page.wait_for(shown % "/finder/windows/mask")
+        self.assertTrue(self.page.evaluate(shown % "/turtlesim/image"))
 
     def test_the_graph_is_drawn(self):
         self.open("graph")

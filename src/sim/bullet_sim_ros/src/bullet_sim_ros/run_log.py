@@ -17,6 +17,7 @@ from bullet_sim.fingerprint import description_hash, fingerprint
 from bullet_sim.formats.run_log import header, part
 from bullet_sim_ros import names
 from bullet_sim_ros.inputs import Input
+from bullet_sim_ros.services.answers import HARMLESS
 from bullet_sim_ros.simulation import Simulation
 
 PART = 1.0  # s, simulated: what a run that is killed may lack of its end
@@ -39,6 +40,7 @@ class RunLog:
         self._simulation, self._world = simulation, simulation.world
         self._file: BinaryIO | None = path.open("wb", buffering=0)
         self._begin = self._tick = self._written = self._world.tick
+        self._harmless = {rospy.resolve_name(name) for name in HARMLESS}
         self._takers: dict[tuple[str, int], int] = {}
         self._fingerprint = b""
         self._touching: set[tuple[str, str]] = set()
@@ -80,7 +82,8 @@ class RunLog:
 
     def _note_call(self, name: str, _caller: str) -> None:
         """Called for every service; those of plugins act in threads of their own."""
-        if not self._simulation.inputs.has(name) and not name.rpartition("/")[2].startswith(READS):
+        reads = name in self._harmless or name.rpartition("/")[2].startswith(READS)
+        if not reads and not self._simulation.inputs.has(name):
             self._note_lack(name)
 
     def _note_lack(self, name: str) -> None:

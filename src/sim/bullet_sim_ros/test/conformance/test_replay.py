@@ -236,6 +236,8 @@ def test_a_state_that_differs_is_refused(runs, driven):
 def test_what_the_log_cannot_repeat_is_said(runs):
     bench = runs.first()
     bench.run(0.1)
+    bench.call("/gazebo/pause_physics")
+    bench.call("/gazebo/unpause_physics")  # neither changes what the world is at a step
     bench.call("/turn/calibrate")
     bench.run(0.1)
     log = runs.end(bench)

@@ -1,6 +1,7 @@
 """Who talks to whom: a robot's inputs and sensors, and what is wrong there, in plain sentences."""
 
 from collections.abc import Collection, Iterator
+from dataclasses import replace
 from typing import Any
 
 import rospy
@@ -13,6 +14,8 @@ from sim_viewer.tools.paced import Paced
 
 DRIVES = COMMANDS | {"ackermann_msgs/AckermannDriveStamped"}
 LOOKERS = ("/rosout", "/rqt_", "/rviz")  # nodes that belong to no robot's program
+SENSES = SENSORS | {"nav_msgs/Odometry"}
+WINDOW = "/windows/"  # in the topic of a program's OpenCV window
 MOST_LINES = 30
 UNHEARD = frozenset(["/tf", "/tf_static"])  # by nobody: as often as not
 
@@ -39,9 +42,12 @@ def describe(state: SystemState, types: dict[str, str], own: str) -> dict[str, A
     rows = [{"name": topic, "type": types.get(topic, ""), "part": part,
              "from": graph.publishers.get(topic, []), "to": graph.subscribers.get(topic, [])}
             for part, kinds, ends in (("input", DRIVES, graph.subscribers),
-                                      ("sensor", SENSORS, graph.publishers))
-            for topic in sorted(ends) if types.get(topic) in kinds]
-    found = [*unheard(graph, simulator), *unseen(graph, simulator)]
+                                      ("sensor", SENSES, graph.publishers))
+            for topic in sorted(ends) if types.get(topic) in kinds and WINDOW not in topic]
+    # Commands that nobody hears are a fault, too, while somebody else drives.
+    undriven = {topic: nodes for topic, nodes in graph.publishers.items()
+                if simulator not in graph.subscribers.get(topic, [])}
+    found = [*unheard(replace(graph, publishers=undriven), simulator), *unseen(graph, simulator)]
     faults = [*_rivals(rows), *(fault.text % fault.values for fault in found)]
     named = {topic for _which, topic, *_nodes in (fault.key for fault in found)}
     return {"rows": rows, "faults": faults[:MOST_LINES],
