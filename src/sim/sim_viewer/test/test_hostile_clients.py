@@ -307,7 +307,7 @@ def test_a_browser_is_cleared_up_after_although_one_part_fails(monkeypatch):
         monkeypatch.setitem(registry._watchables, "polled", Polled)
         node = Node(Options(), asyncio.get_running_loop())
         context = Context(node, 1)
-        client = hub.Client(None, context)
+        client = hub.Client(None, context, str)
         released = []
         context.on_close(fail)
         context.on_close(lambda: released.append(True))
