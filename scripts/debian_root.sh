@@ -7,11 +7,11 @@
 #   sudo scripts/debian_root.sh --make USER FOLDER...   makes it for this user; FOLDERs are the machine's own in there, too
 #
 # MIRROR= is as for setup.sh; without it debootstrap chooses.
-environment=
+environment= copy=
 if [[ ${1:-} != --* ]]; then  # before common.sh changes it, and where that Debian finds it
   environment=$(umask 077; mktemp /tmp/environment.XXXXXX) && env -0 > "$environment" || exit 2
 fi
-trap 'rm -f "$environment"' EXIT
+trap 'rm -rf "$environment" "$copy"' EXIT
 trap 'trap - INT; kill -INT $$' INT  # also where what runs has taken Ctrl-C for a fault of its own
 on_any_linux=yes stays_root=yes
 . "$(dirname "${BASH_SOURCE[0]}")/common.sh"
@@ -131,8 +131,13 @@ if ! is_ready "${needed[@]}"; then
   fi
   [ "$passwordless" = yes ] || say $"sudo asks for your password."
   [ ! -f "$place/folders" ] || mapfile -t needed < <(sort -u "$place/folders" - <<< "$(printf '%s\n' "${needed[@]}")")
+  copy=$(mktemp -d /tmp/debian-root.XXXXXX)  # of a home on NFS root may read nothing
+  (cd "$root" && cp -r --parents scripts src/interfaces/terminal_language "$copy")
+  cd "$copy"
   sudo "MIRROR=${MIRROR:-}" "http_proxy=${http_proxy:-}" "https_proxy=${https_proxy:-}" "LANGUAGE=${LANGUAGE:-}" \
-    "$root/scripts/debian_root.sh" --make "$passwordless" "$(id -un)" "${needed[@]}" || exit 2
+    scripts/debian_root.sh --make "$passwordless" "$(id -un)" "${needed[@]}" || exit 2
+  cd "$OLDPWD"
+  rm -rf "$copy"
 fi
 trap - EXIT
 exec sudo -n -- "$place/enter" "$PWD" "$environment" "$root/scripts/$1" "${@:2}"

@@ -1,8 +1,11 @@
 """On a Linux that is not Debian the scripts run in a Debian of their own: debian_root.sh."""
 
 import os
+import re
 import shutil
+import signal
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
@@ -22,6 +25,7 @@ class Machine:
         self.programs.mkdir()
         shutil.copytree(ROOT / "scripts", folder / "scripts",
                         ignore=shutil.ignore_patterns("__pycache__"))
+        (folder / "src").symlink_to(ROOT / "src")
         for release in ("bookworm-amd64", "trixie-amd64"):
             (folder / "dependencies" / release).mkdir(parents=True)
         (folder / "os-release").write_text(os_release)
@@ -33,6 +37,7 @@ class Machine:
                              ("/var/lib/ros1-driving-courses", str(self.place)),
                              ("rule=/etc/sudoers.d/", f"rule={folder}/sudoers-"),
                              ("mktemp /tmp/", f"mktemp {folder}/"),
+                             ("mktemp -d /tmp/", f"mktemp -d {folder}/"),
                              ("/usr/share/keyrings", str(folder))):
                 text = text.replace(old, new)
             script.write_text(text)
@@ -118,22 +123,23 @@ def test_a_folder_that_is_not_in_there_yet_is_added(tmp_path):
     machine = Machine(tmp_path, UBUNTU)
     machine.forget_what_root_does()
     assert machine.run("course.sh", HOME="/opt/homes/one").returncode == 0
-    before = (machine.place / "folders").read_text().split()
-    added = machine.run("course.sh", HOME="/schools/home/two")
+    before = (machine.place / "folders").read_text().splitlines()
+    added = machine.run("course.sh", HOME="/schools/my home/two")
     assert added.returncode == 0
     assert added.stdout.splitlines()[:-1] == ["sudo asks for your password."]
-    after = (machine.place / "folders").read_text().split()
-    assert "/opt" in before and set(after) == {*before, "/schools/home/two"}
+    after = (machine.place / "folders").read_text().splitlines()
+    assert "/opt" in before and set(after) == {*before, "/schools/my home/two"}
 
 
 @pytest.mark.parametrize(("program", "text", "said"), [
     ("debootstrap", "echo 'E: No space left'; exit 1",
-     "debootstrap could not make a Debian: E: No space left (full log: var/log/debootstrap.log)"),
+     "debootstrap could not make a Debian: E: No space left (full log: /"),
     ("debootstrap", "echo 'E: Failed getting release file http://x/Release'; exit 1",
      "var/log/debootstrap.log says more): connect, or correct MIRROR=, then type this again"),
     ("df", "printf 'x\\nx x x 100\\n'", "100 MB free, 3300 MB are needed"),
     ("sudo", "echo 'sudo: a password is required' >&2; exit 1", "a password is required"),
     ("uname", "echo riscv64", "needs Linux on a 64-bit Intel, AMD or ARM processor"),
+    ("id", "echo 0", "is for a user with sudo, not for root; or use docker/ in this repository"),
 ])
 def test_what_fails_is_said_and_the_next_call_goes_on(tmp_path, program, text, said):
     machine = Machine(tmp_path, UBUNTU)
@@ -149,6 +155,78 @@ def test_what_fails_is_said_and_the_next_call_goes_on(tmp_path, program, text, s
     if kept:
         machine.program(program, kept)
     assert machine.run("course.sh").returncode == 0
+
+
+def test_where_there_is_no_sudo_one_line_says_so(tmp_path):
+    machine = Machine(tmp_path, UBUNTU)
+    (machine.programs / "sudo").unlink()
+    for name in "awk basename bash cmp cut dirname env mktemp rm sed sort stat uname".split():
+        (machine.programs / name).symlink_to(shutil.which(name))
+    common = tmp_path / "scripts/common.sh"
+    common.write_text(re.sub(r"(PATH=[^:]*):/usr/local/sbin.*", r"\1", common.read_text("utf-8")))
+    done = machine.run("course.sh")
+    assert done.returncode != 0 and not machine.place.exists()
+    assert done.stderr == ("course: this is Ubuntu 24.04.1 LTS, where a Debian of its own is "
+                           "needed, and there is no sudo; or use docker/ in this repository\n")
+
+
+@pytest.mark.parametrize("what_else_goes_on", [False, True])
+def test_after_a_crash_in_the_middle_the_next_call_goes_on(tmp_path, what_else_goes_on):
+    """Either all of it is killed, or the caller alone, with root's part still at work."""
+    machine = Machine(tmp_path, UBUNTU)
+    machine.forget_what_root_does()
+    debootstrap = (machine.programs / "debootstrap").read_text().partition("\n")[2]
+    begun, go_on = tmp_path / "begun", tmp_path / "go-on"
+    machine.program("debootstrap", f"""[ -e {begun} ] || mkdir -p {machine.place}/debian.new/half
+        touch {begun}; for i in {{1..300}}; do [ -e {go_on} ] && break; sleep 0.1; done
+        {debootstrap}""")
+    course = {"args": "scripts/course.sh", "cwd": tmp_path, "stdout": subprocess.PIPE,
+              "text": True, "env": {**os.environ, "LANGUAGE": "en"}}
+    with subprocess.Popen(**course, start_new_session=True) as first:
+        end = time.monotonic() + 30
+        while not begun.exists() and time.monotonic() < end:
+            time.sleep(0.02)
+        if what_else_goes_on:
+            first.kill()
+        else:
+            os.killpg(first.pid, signal.SIGKILL)
+            go_on.touch()
+    second = subprocess.Popen(**course, stderr=subprocess.PIPE)
+    lines = [second.stdout.readline() for _ in range(3 if what_else_goes_on else 2)]
+    go_on.touch()
+    said, wrong = second.communicate(timeout=60)
+    assert (second.returncode, wrong) == (0, "")
+    assert said.endswith(f"{tmp_path}/scripts/course.sh\n")
+    waited = "Another terminal is making this Debian: waiting for it.\n"
+    assert (lines[-1] == waited) == what_else_goes_on
+    assert not (machine.place / "debian.new").exists()
+    assert (machine.place / "debian/half").exists() == what_else_goes_on
+
+
+def test_one_of_another_version_is_kept_and_entered_as_this_version_does(tmp_path):
+    machine = Machine(tmp_path, UBUNTU)
+    machine.forget_what_root_does()
+    assert machine.run("course.sh").returncode == 0
+    (machine.place / "debian/mine").touch()
+    (machine.place / "enter").write_text("#!/bin/bash\necho of another version\n")
+    done = machine.run("course.sh")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == (f"sudo asks for your password.\n"
+                           f"{tmp_path} {tmp_path}/scripts/course.sh\n")
+    assert (machine.place / "debian/mine").exists()
+
+
+def test_it_is_made_where_root_may_not_read_this_folder_as_on_nfs(tmp_path):
+    machine = Machine(tmp_path, UBUNTU)
+    machine.forget_what_root_does()
+    sudo = (machine.programs / "sudo").read_text().partition("\n")[2]
+    machine.program("sudo", sudo.replace('exec env "$@"', """
+        mv scripts hidden; env "$@"; rc=$?; mv hidden scripts; exit $rc""".replace(
+            "scripts", f"{tmp_path}/scripts").replace("hidden", f"{tmp_path}/hidden")))
+    done = machine.run("course.sh")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.endswith(f"{tmp_path}/scripts/course.sh\n")
+    assert not [*tmp_path.glob("environment.*"), *tmp_path.glob("debian-root.*")]
 
 
 def test_a_folder_that_setup_refuses_is_refused_before_a_debian_is_made(tmp_path):
@@ -234,7 +312,6 @@ def test_a_workspace_that_is_sourced_outside_says_where_to_type(tmp_path, langua
 
 def test_a_bug_report_is_written_where_there_is_no_python(tmp_path):
     machine = Machine(tmp_path, UBUNTU)
-    (tmp_path / "src").symlink_to(ROOT / "src")
     machine.program("python3", "echo python3: command not found >&2; exit 127")
     done = machine.run("report.sh")
     assert (done.returncode, done.stderr) == (0, "")
@@ -279,7 +356,7 @@ def test_who_enters_is_the_user_in_the_same_folders(tmp_path):
         shutil.copy(path, target)
     (debian / "usr").mkdir(exist_ok=True)
     (debian / "usr/bin").symlink_to("../bin")
-    mine = tmp_path / "mine"
+    mine = tmp_path / "my folder"
     mine.mkdir()
     (mine / "file").write_text("the machine's own\n")
     for folder in (tmp_path, *tmp_path.parents):
