@@ -71,5 +71,5 @@ case "${1:-}" in
     list '##'
     echo $"For those who test or change this repository:"
     list '###'
-    echo $"Then, in each new terminal: source devel/setup.bash" ;;
+    if is_served; then echo $"Then, in each new terminal: source devel/setup.bash"; else echo $"Then, in each new terminal: make shell"; fi ;;
 esac
