@@ -2,18 +2,21 @@
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
-from rclpy.logging import get_logger
+from rclpy.signals import SignalHandlerOptions
 
 
 def say_goodbye():
-    # Topics are closed by now: who stops a robot does it before.  此时话题已关闭，停车要更早
-    get_logger("shutdown").info("last words")
+    # The topics are closed by now, and the log is one: a robot is stopped before.
+    # 此时话题（包括日志）已关闭，停车要更早
+    print("last words")
 
 
 def main():
-    rclpy.init()
+    # ROS's own handler of Ctrl-C ends the context, but does not call say_goodbye.
+    # ROS 自己处理 Ctrl-C 时不会调用 say_goodbye
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     node = rclpy.create_node("shutdown")
-    rclpy.get_default_context().on_shutdown(say_goodbye)  # also after Ctrl-C  Ctrl-C 也会调用
+    rclpy.get_default_context().on_shutdown(say_goodbye)  # called by shutdown()
     count = 0
 
     def tick():
@@ -25,11 +28,13 @@ def main():
             rclpy.shutdown()  # now ok() is false, and spin() ends
 
     node.create_timer(0.1, tick)  # s
-    rclpy.spin(node)
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # Ctrl-C, or shutdown()
+    finally:
+        rclpy.try_shutdown()  # unless it is shut down already  已关闭则什么也不做
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass  # Ctrl-C
+    main()

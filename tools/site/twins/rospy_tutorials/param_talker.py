@@ -2,8 +2,8 @@
 
     ros2 run rospy_tutorials param_talker.py --ros-args -p utterance:="Hello" -p gains.P:=1.5
 
-There is no server for all: each parameter belongs to a node and is declared there.
-没有公共的参数服务器：参数属于节点，要先声明。
+There is no server for all: each parameter belongs to a node and is declared there; a value of
+another type is refused.  没有公共的参数服务器：参数属于节点，要先声明；类型不对会被拒绝。
 """
 
 import rclpy
