@@ -62,6 +62,20 @@ class ToolsPage(unittest.TestCase):
             document.querySelector('#wiring-faults').textContent
               .includes({json.dumps(rospy.get_name())})""")
 
+    def test_the_tab_drive_says_who_else_drives_the_robot_that_is_chosen(self):
+        idle = rospy.Subscriber("/idle/cmd_vel", Twist, lambda _twist: None)
+        self.addCleanup(idle.unregister)
+        self.open("drive")
+        for robot, driver in (("/turtle1", "/draw_square"), ("/idle", ""),
+                              ("/turtle1", "/draw_square")):
+            self.page.wait_for(f"""(select => {{
+                select.value = "{robot}/cmd_vel";
+                if (select.value) select.dispatchEvent(new Event("change"));
+                return select.value; }})(document.querySelector("#drive-topic"))""")
+            self.page.wait_for("(words => words === '' ? !'%s' : '%s' && words.includes('%s'))"
+                               "(document.querySelector('#drive-who').textContent)"
+                               % (driver, driver, driver))
+
     def test_a_window_of_opencv_is_shown_beside_the_camera_when_it_appears(self):
         shown = "!!document.querySelector('figure[data-topic=\"%s\"]')"
         self.open("cameras")

@@ -108,6 +108,7 @@ function controls(panel, link) {
   const steer = slider("drive-steer", t("steering angle", "转向角"), "rad", STEER);
   let topic = null;
   let car = false;
+  let wiring = [];
 
   const say = (name, reason) => {
     state.dataset.state = name;
@@ -116,9 +117,15 @@ function controls(panel, link) {
         : t("Hold W A S D or the arrow keys, or the joystick. Space stops.",
           "按住 W A S D、方向键或摇杆行驶，空格键停止。");
   };
+  const tellDrivers = () => {
+    const nodes = wiring.find(({ name }) => name === topic)?.from ?? [];
+    drivers.textContent = nodes.length ? t(`${nodes.join(", ")} sends commands here, too`,
+      `${nodes.join(", ")} 也在这里发送指令`) : "";
+  };
   const open = async (name, type) => {
     handle.drop("closed");
     topic = name; // at once: a key that is pressed now is meant for the robot that is shown
+    tellDrivers();
     car = type === CAR;
     turn.label.hidden = car;
     steer.label.hidden = !car;
@@ -135,9 +142,8 @@ function controls(panel, link) {
   steer.label.hidden = true;
   endings.push(listenToKeys(handle));
   endings.push(link.watch("wiring", {}, ({ rows = [] }) => {
-    const nodes = rows.find(({ name }) => name === topic)?.from ?? [];
-    drivers.textContent = nodes.length ? t(`${nodes.join(", ")} sends commands here, too`,
-      `${nodes.join(", ")} 也在这里发送指令`) : "";
+    wiring = rows;
+    tellDrivers();
   }));
   endings.push(link.onConnection((there) => there || handle.drop("connection")));
   panel.append(element("label", { text: t("Topic", "话题") }, topicChoice(link, open)), drivers,
