@@ -66,15 +66,13 @@ class ToolsPage(unittest.TestCase):
         idle = rospy.Subscriber("/idle/cmd_vel", Twist, lambda _twist: None)
         self.addCleanup(idle.unregister)
         self.open("drive")
-        for robot, driver in (("/turtle1", "/draw_square"), ("/idle", ""),
-                              ("/turtle1", "/draw_square")):
+        for robot, drivers in (("/turtle1", "/draw_square sends commands here, too"), ("/idle", ""),
+                               ("/turtle1", "/draw_square sends commands here, too")):
             self.page.wait_for(f"""(select => {{
                 select.value = "{robot}/cmd_vel";
                 if (select.value) select.dispatchEvent(new Event("change"));
                 return select.value; }})(document.querySelector("#drive-topic"))""")
-            self.page.wait_for("(words => words === '' ? !'%s' : '%s' && words.includes('%s'))"
-                               "(document.querySelector('#drive-who').textContent)"
-                               % (driver, driver, driver))
+            self.page.wait_for(f"document.querySelector('#drive-who').textContent === '{drivers}'")
 
     def test_a_window_of_opencv_is_shown_beside_the_camera_when_it_appears(self):
         shown = "!!document.querySelector('figure[data-topic=\"%s\"]')"
