@@ -288,6 +288,13 @@ def test_a_full_disk_leaves_no_half_of_a_lesson(tmp_path, monkeypatch):
     assert not [path for path in own.package.rglob("*.py*") if path.is_file()]
 
 
+def test_nobody_else_reads_the_token_also_in_a_folder_that_was_copied(tmp_path):
+    own = folder.Folder(tmp_path / "ws")
+    own.state.mkdir(0o755, parents=True)
+    with own.take():
+        assert own.state.stat().st_mode & 0o777 == 0o700
+
+
 def test_a_second_reset_keeps_what_the_first_one_kept(tmp_path, monkeypatch):
     own, name = folder.Folder(tmp_path), "05follower_proporation.py"
     monkeypatch.setattr(folder.time, "strftime", lambda _format: "20260101-120000")

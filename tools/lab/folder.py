@@ -72,7 +72,8 @@ class Folder:
         if self.path.exists() and not (self.path.is_dir() and os.access(self.path, os.W_OK)):
             raise LabError(f"{self.path} cannot be written by you: name a folder of your own, "
                            "such as: make lab WS=~/my_ws")
-        self.state.mkdir(0o700, parents=True, exist_ok=True)
+        self.state.mkdir(parents=True, exist_ok=True)
+        self.state.chmod(0o700)  # the token is in it
         lock = open(self.state / "lock", "a+", encoding="utf-8")  # noqa: SIM115 (kept open)
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

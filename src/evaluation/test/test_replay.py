@@ -4,8 +4,8 @@ import gzip
 
 import pytest
 
-from bullet_sim.formats.run_log import header, part
-from evaluation.replay import main
+from bullet_sim.formats.run_log import RunLog, header, part
+from evaluation.replay import Replay, main
 from evaluation.run_log import RUN_LOG, add_marks
 
 
@@ -84,6 +84,11 @@ def test_what_is_no_log(said, out):
     (out / "hall-3.run.log.gz").write_bytes(gzip.compress(b"nothing"))
     assert said("--run", out / "hall-3") == (2, (
         f"replay: {out}/hall-3.run.log.gz is not the log of a run, or was cut short at once\n"))
+
+
+def test_without_a_standard_input_it_goes_on(monkeypatch):
+    monkeypatch.setattr("sys.stdin", None)  # <&-
+    Replay(None, None, RunLog(head()))._read()
 
 
 def test_marks_are_added_to_a_log_that_is_there(tmp_path):

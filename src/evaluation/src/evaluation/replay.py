@@ -226,11 +226,11 @@ class Replay:
         def say(_done: bool, line: str) -> None:
             if line:
                 self._say(line)
-        for line in sys.stdin:
+        for line in sys.stdin or ():
             if word := line.strip():
                 command = word.lower()
                 self._orders.put(Order(command if command in COMMANDS else word, say))
-        if sys.stdin.isatty():  # Ctrl-D
+        if sys.stdin and sys.stdin.isatty():  # Ctrl-D
             self._orders.put(Order("q", say))
 
     # --- the simulator
