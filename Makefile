@@ -47,9 +47,9 @@ race: ## drive the racetrack by camera, and report [LAPS= DURATION= FAST= CAMERA
 	  $(if $(filter-out 0 no false,$(FAST)),--fast) $(if $(CAMERA),--camera "$$CAMERA") \
 	  $(if $(SEED),--seed "$$SEED")
 
-replay: ## go back to an image of a run by FAST=1, and drive on from there [RUN=out/course] [AT=lost: or lap, contact, largest, 23.4, image:700, end] [CONTROL=1] [PORT=8080]
+replay: ## go back to an image of a run by FAST=1, and drive on from there [RUN=out/course] [AT=lost: or lap, contact, largest, 23.4, image:700, end] [CONTROL=1] [PORT=8080] [OUT=out/replay]
 	@scripts/replay.sh $(if $(RUN),--run "$$RUN") $(if $(AT),--at "$$AT") \
-	  $(if $(filter-out 0 no false,$(CONTROL)),--control) $(if $(PORT),--port "$$PORT")
+	  $(if $(filter-out 0 no false,$(CONTROL)),--control) $(if $(PORT),--port "$$PORT") $(if $(OUT),--out "$$OUT")
 
 viewer: ## start the line course, and show it in the browser [CONTROL=1] [RVIZ=FILE] [PORT=8080] [ADDRESS=0.0.0.0]
 	@exec scripts/viewer.sh $(if $(filter-out 0 no false,$(CONTROL)),control:=true) \

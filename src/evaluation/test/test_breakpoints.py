@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from debug_client import LIMIT, DebugClient
+from node_basics import debugging
 
 from run_session.files import find_package
 
@@ -183,6 +184,24 @@ def test_what_is_no_program_is_one_line(tmp_path, text, words):
     assert done.returncode == 2
     line, = done.stderr.splitlines()
     assert words in line
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    ([], "debug: name a program: rosrun node_basics debug FILE [ARGUMENTS]"),
+    (["--port", "5679"], "debug: name a program: rosrun node_basics debug FILE [ARGUMENTS]")])
+def test_without_a_program_a_line_says_what_to_type(words, said):
+    done = subprocess.run(debug(*words), capture_output=True, text=True, timeout=LIMIT)
+    assert (done.returncode, done.stderr) == (
+        2, f"{said} (see: rosrun node_basics debug --help)\n")
+
+
+def test_a_port_of_root_s_is_not_called_taken(monkeypatch):
+    def refuse(*_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(debugging.socket.socket, "bind", refuse)
+    assert debugging.taken(80) == (
+        "port 80 is root's: choose one from 1024, as 5678 without --port")
 
 
 def test_a_taken_port_a_second_debugger_and_ctrl_c_are_one_line_each(start, tmp_path):

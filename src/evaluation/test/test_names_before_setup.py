@@ -42,6 +42,8 @@ def followers(course):
      "chaos: no course 'x' (COURSE=); there are: course, race, lane_empty"),
     (["soak", "--course", "x"],
      "soak: no course 'x' (COURSE=); there are: course, race, navigation"),
+    *((["lab", "--port", port], f"lab: port is {port}; give one from 1024 to 65535, such as "
+                                "PORT=8889") for port in ("80", "70000", "x")),
     (["mark", "--course", "x"],
      "mark: --course (COURSE=) must be one of course, race, lane, is 'x'")])
 def test_a_wrong_name_is_refused_before_setup(words, line, tmp_path):

@@ -1,11 +1,13 @@
 """make replay's refusals: one line each, before anything is started."""
 
 import gzip
+import os
 
 import pytest
 
 from bullet_sim.formats.run_log import RunLog, header, part
-from evaluation.replay import Replay, main
+from evaluation.command_line import results_folder
+from evaluation.replay import OF, Replay, main
 from evaluation.run_log import RUN_LOG, add_marks
 
 
@@ -53,10 +55,9 @@ def test_a_run_in_real_time_has_a_film(said, out, films, hint):
     ([*LINES, ["end"]], "image:3", "the log has no image:3; there are image:1 to image:2"),
     ([*LINES, ["end"]], "7", "the log has no image at 7 s; its last one is at 0.067 s"),
     (LINES, "image:0", "the log has no image:0; there are image:1 to image:2"),
-    (LINES, "0.x", "the log has no mark '0.x'; there are: none; or name a time in s, image:N or "
-                   "end"),
-    (LINES, "lost", "the log has no mark 'lost'; there are: none; or name a time in s, image:N or "
-                    "end"),
+    (LINES, "0.x", "the log has no mark '0.x' nor any other: name a time in s, image:N or end"),
+    ([*LINES, ["mark", "lap", 0.03, "1"]], "lost",
+     "the log has no mark 'lost'; there are: lap; or name a time in s, image:N or end"),
     ([], "end", "the log has no image: the run ended before the first one"),
     ([["i", 1, "01"], ["lacks", "/switch"], *LINES], "image:2",
      "at 0.001 s the run used /switch, which is not in its log")])
@@ -64,6 +65,16 @@ def test_an_image_that_cannot_be_gone_to(said, out, lines, at, line):
     (out / RUN_LOG).write_bytes(part([head(), *lines]))
     for run in (out, out / RUN_LOG):
         assert said("--run", run, "--at", at) == (2, f"replay: {out / RUN_LOG}: {line}\n")
+
+
+def test_a_second_one_says_what_to_type(said, out, tmp_path):
+    run = head() | {"run": dict.fromkeys(OF, "")}
+    (out / RUN_LOG).write_bytes(part([run, *LINES, ["end"]]))
+    with results_folder("replay", tmp_path / "replay"):
+        code, line = said("--run", out, "--out", tmp_path / "replay")
+    assert (code, line) == (2, (
+        f"replay: {tmp_path}/replay is being written by another run (PID {os.getpid()}): end it, "
+        "or give a folder elsewhere: make replay OUT=DIR (scripts/replay.sh --out DIR)\n"))
 
 
 def test_another_version_s_log(said, out):

@@ -50,10 +50,12 @@ class Replay:
         self.process.stdin.write(f"{word}\n")
         self.process.stdin.flush()
 
-    def wait_for(self, text):
+    def wait_for(self, text, since=None):
+        """A line with it of those since the last command, or line `since`."""
+        since = self._read if since is None else since
         until = time.monotonic() + LIMIT
         while True:
-            for line in self.lines[self._read:]:
+            for line in self.lines[since:]:
                 if text in line:
                     return line
             assert self.process.poll() is None and time.monotonic() < until, self.lines
@@ -79,13 +81,22 @@ def test_who_drives_on_from_an_image_with_the_same_program_drives_the_same(tmp_p
         replay.wait_for("image 60 of ")
         replay.type("lost")
         replay.wait_for("the log has no mark 'lost'")
+        uri = replay.wait_for(" ROS_MASTER_URI=", 0).partition("ROS_MASTER_URI=")[2]
+        unpause, said = ["rosservice", "call", "/gazebo/unpause_physics"], ""
+        joined = os.environ | {"ROS_MASTER_URI": uri}
+        while "the world goes on by itself; p or a time goes back" not in said:  # the page's button
+            subprocess.run(unpause, env=joined, check=True, timeout=60)
+            replay.type("n")
+            said = replay.wait_for(" the ")
+        replay.type("image:62")  # ahead of it
+        replay.wait_for("image 62 of ")
+        replay.type("2.0")
+        replay.wait_for("image 60 of ")
         replay.type("go")
         said = replay.wait_for("no program sends /cmd_vel: in another terminal, start the ")
         assert "such as rosrun learning_topic 07follower_ground.py; then type go again" in said
-        joined = replay.lines[[" ROS_MASTER_URI=" in line for line in replay.lines].index(True)]
-        uri = joined.partition("ROS_MASTER_URI=")[2].partition(";")[0]
         follower = subprocess.Popen(["rosrun", "learning_topic", "07follower_ground.py"],
-                                    env=os.environ | {"ROS_MASTER_URI": uri})
+                                    env=joined)
         said = ""
         while "the world goes on" not in said:
             replay.type("go")

@@ -36,12 +36,17 @@ REPLAY_LIMIT = 3600.0  # s, wall
 LOOK_PERIOD = 0.1  # s, wall
 COMMANDS = ("n", "p", "go", "q", "help")
 GO_TO_IMAGE = "/gazebo/go_to_image"
+WENT_ON = "the world has gone on by itself"  # begins the simulator's answer
 NEW = "new.run.log.gz"  # of the world that is gone back to, as long as it runs
 OF = ("words", "driver", "sensor", "commands", "controllers", "environment")
 
 
 class NotThere(Exception):
     """The image was not reached as in the run; one line."""
+
+
+class WentOn(Exception):
+    """The world has left the run: the page, or a service, has let it go on."""
 
 
 class Order(NamedTuple):
@@ -134,13 +139,16 @@ class Replay:
         new.replace(kept)
 
     def go_to(self, number: int) -> None:
-        """Bring a world to the image; NotThere if it is not as in the run."""
+        """Bring a world to the image; NotThere if it is not as in the run, WentOn if it left it."""
         if not self._on_log or number <= self._image:
             self._start_world()
         rospy.set_param("/gazebo/replay_to", number)
         began, passed = time.monotonic(), self._time(number) - self._time(self._image)
         answer = self._call()
-        self._on_log, self._image = answer.success, number
+        self._on_log = answer.success
+        if answer.message.startswith(WENT_ON):
+            raise WentOn
+        self._image = number
         if not answer.success:
             raise NotThere(answer.message)
         took = time.monotonic() - began
@@ -178,7 +186,11 @@ class Replay:
             image_of(self._log, self._path, word)
         if not 1 <= number <= len(self._log.images):
             raise RunError(f"the log has image 1 to {len(self._log.images)}")
-        if word == "n" and not self._on_log:
+        with contextlib.suppress(WentOn):
+            if word != "n" or self._on_log:
+                self.go_to(number)
+                return said
+        if word == "n":
             raise RunError("the world goes on by itself; p or a time goes back into the run")
         self.go_to(number)
         return said

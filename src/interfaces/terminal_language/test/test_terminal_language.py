@@ -237,7 +237,7 @@ def test_a_catalogue_is_read_once():
     ("autorace: no mission 'foo' (MISSION=); there are: all",
      "没有任务 'foo'（MISSION=）；可用的有"),
     ("no turtle: service [/spawn] responded with an error: b'service cannot process request: A "
-     "turtle named [turtle2] already exists': is there a turtle2 already?  是否已有同名海龟？",
+     "turtle named [turtle2] already exists': is there a turtle2 already?",
      "没有生成海龟：服务 [/spawn] 拒绝了：A turtle named [turtle2] already exists"),
     ('not yet: "a" passed to lookupTransform argument target_frame does not exist. ',
      '还没有：没有坐标系 "a"（lookupTransform 的参数 target_frame）')])

@@ -79,6 +79,19 @@ def test_a_log_that_was_cut_is_read_up_to_its_last_whole_part(path):
     assert read_run_log(path).whole
 
 
+def test_marks_behind_a_part_that_was_cut_short_are_read(path):
+    whole = path.read_bytes()
+    for cut in (1, 9, 30):
+        path.write_bytes(whole[:-cut])
+        append_marks(path, [Mark("lap", 0.034)])
+        with path.open("ab") as file:
+            file.write(part([["i", 30, "05"], ["end"]]))  # of an image that follows one unknown
+        append_marks(path, [Mark("lost", 0.067)])
+        log = read_run_log(path)
+        assert [mark.name for mark in log.marks] == ["lap", "lost"]
+        assert len(log.images) == 2 and not log.whole
+
+
 @pytest.mark.parametrize("content", [b"", b"text", part([[]]), part([5])])
 def test_what_is_no_log_is_refused(path, content):
     path.write_bytes(content)

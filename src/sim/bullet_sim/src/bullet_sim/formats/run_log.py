@@ -1,8 +1,8 @@
 """The log of a run in lockstep, from which the run can be repeated: how it is written and read.
 
 It is a gzip file of JSON lines. Each part of it is a gzip member of its own, so it can be read up
-to the last whole part when the writer was killed, and marks can be added afterwards. The first line
-is the header, a mapping; each other one is a list:
+to the last whole part when the writer was killed, and marks can be added afterwards, also behind a
+part that was cut short. The first line is the header, a mapping; each other one is a list:
     ["setup", SERVICE, SHA-256]  a call before time began, with the hash of its request
     ["to", NAME, N]              from here on number 0, 1, ... stands for the N-th taker of NAME
     ["t", STEPS]                 that many physics steps after the line before
@@ -28,6 +28,8 @@ from bullet_sim.errors import SimulationError
 
 FORMAT = 1
 SLACK = 1e-6  # s
+PART = b"\x1f\x8b\x08\0\0\0\0\0"  # begins each part: gzip, without a name or time
+MARK = b'["mark",'  # begins a line of the part
 
 
 class RunLogError(SimulationError):
@@ -112,7 +114,10 @@ class RunLog:
         if not found and (not number or (number.isascii() and number.isdecimal())):
             found, which = [mark for mark in self.marks if mark.name == word], int(number or 1)
         if not 1 <= which <= len(found):
-            there = ", ".join(dict.fromkeys(mark.name for mark in self.marks)) or "none"
+            there = ", ".join(dict.fromkeys(mark.name for mark in self.marks))
+            if not there:
+                raise RunLogError(f"the log has no mark {at!r} nor any other: name a time in s, "
+                                  "image:N or end")
             raise RunLogError(f"the log has no mark {at!r}; there are: {there}; or name a time in "
                               "s, image:N or end")
         return self.image_at(found[which - 1].time)
@@ -158,18 +163,19 @@ def read_run_log(path: Path) -> RunLog:
 
 
 def _lines(data: bytes) -> list[bytes]:
-    """The lines of all whole parts."""
-    found = []
+    """The lines of all whole parts; behind one that was cut short, the marks alone."""
+    found, begins = [], b""
     while data:
         member = zlib.decompressobj(wbits=31)  # 16 + 15: gzip
         try:
             text = member.decompress(data)
         except zlib.error:
-            break
-        if not member.eof:
-            break
-        found += text.splitlines()
-        data = member.unused_data
+            text = b""
+        if member.eof:
+            found += [line for line in text.splitlines() if line.startswith(begins)]
+            data = member.unused_data
+        else:
+            begins, data = MARK, b"".join(data[1:].partition(PART)[1:])
     return found
 
 
