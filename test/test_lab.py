@@ -33,6 +33,7 @@ SCRIPTS = "src/my_lessons/scripts/learning_topic"
 sys.path.append(str(ROOT / "src/sim/sim_viewer/test"))
 sys.path.append(str(TOOL))
 import folder  # noqa: E402
+import settings  # noqa: E402
 
 
 def free_port() -> int:
@@ -305,6 +306,28 @@ def test_a_second_reset_keeps_what_the_first_one_kept(tmp_path, monkeypatch):
     assert first.read_text() == "mine\n" and second != first
 
 
+@pytest.mark.parametrize(("name", "line"), [
+    ("", "name a file: reset_lesson 05follower_proporation.py"),
+    ("05folower.py", "05folower.py is no copy of a lesson's file: there is "
+     "nothing to reset it to; is 05follower_proporation.py meant?"),
+    ("zzz", "zzz is no copy of a lesson's file: there is nothing to reset it to")])
+def test_reset_names_the_file_that_is_meant(name, line, tmp_path):
+    assert refused("--ws", str(tmp_path), "--reset", name) == f"lab: {line}\n"
+    assert not list(tmp_path.iterdir())
+
+
+def test_reset_lesson_passes_on_what_is_typed(tmp_path):
+    own = folder.Folder(tmp_path)
+    own.state.mkdir()
+    settings.write_terminal(own, "http://localhost:1")
+    define = next(line for line in (own.state / "bashrc").read_text().splitlines()
+                  if line.startswith("reset_lesson"))
+    for typed, said in (("", "name a file"), ("a b", "a b is no copy")):
+        done = subprocess.run(["bash", "-c", f"{define}\nreset_lesson {typed}"], text=True,
+                              capture_output=True, timeout=LIMIT, check=False)
+        assert done.stderr.startswith(f"lab: {said}") and done.stderr.count("\n") == 1
+
+
 def refused(*words: str) -> str:
     """What a lab prints that does not start."""
     done = subprocess.run([sys.executable, TOOL, *words], capture_output=True, text=True,
@@ -357,7 +380,10 @@ def test_what_cannot_be_is_one_line(lab, tmp_path):
     assert f"A lab runs already in {lab.ws}: {lab.base}" in refused("--ws", str(lab.ws))
     assert "the courses' own folder" in refused("--ws", str(ROOT / "src/mine"))
     (tmp_path / "file").write_text("")
-    assert "cannot be written by you" in refused("--ws", str(tmp_path / "file"))
+    for path in (tmp_path / "file", "/proc/lab"):  # there, and not to be made
+        assert refused("--ws", str(path)) == (
+            f"lab: {path} cannot be written by you: name a folder of your own, such as: make lab "
+            "WS=~/my_ws\n")
     assert not (tmp_path / "a").exists()
 
 

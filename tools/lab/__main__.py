@@ -187,7 +187,7 @@ def main() -> int:
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupted)
     try:
-        if given.reset:
+        if given.reset is not None:
             print(f"lab: reset; your version is kept as {folder.reset(Path(given.reset))}")
             return 0
         choose_port(given.port)  # before anything is made

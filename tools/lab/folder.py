@@ -9,6 +9,8 @@
 from __future__ import annotations
 
 import contextlib
+import difflib
+import errno
 import fcntl
 import os
 import shutil
@@ -69,12 +71,15 @@ class Folder:
         if self.path.is_relative_to(ROOT) and not self.path.is_relative_to(ROOT / "out"):
             raise LabError(f"{self.path} lies in the courses' own folder: name another, such as: "
                            "make lab WS=~/courses_ws")
-        if self.path.exists() and not (self.path.is_dir() and os.access(self.path, os.W_OK)):
+        try:
+            self.state.mkdir(parents=True, exist_ok=True)
+            self.state.chmod(0o700)  # the token is in it
+            lock = open(self.state / "lock", "a+", encoding="utf-8")  # noqa: SIM115 (kept open)
+        except OSError as error:
+            if error.errno == errno.ENOSPC:
+                raise
             raise LabError(f"{self.path} cannot be written by you: name a folder of your own, "
-                           "such as: make lab WS=~/my_ws")
-        self.state.mkdir(parents=True, exist_ok=True)
-        self.state.chmod(0o700)  # the token is in it
-        lock = open(self.state / "lock", "a+", encoding="utf-8")  # noqa: SIM115 (kept open)
+                           "such as: make lab WS=~/my_ws") from error
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -125,13 +130,25 @@ class Folder:
                     copy.chmod(0o444)
 
     def reset(self, path: Path) -> Path:
-        """Bring a copy back as it was; returns where the changed file is kept now."""
+        """Bring a copy back as it was; returns where the changed file is kept now.
+
+        LabError if the path names none; it says which one may be meant.
+        """
+        if path == Path():
+            raise LabError("name a file: reset_lesson 05follower_proporation.py")
         file = (self.path / path).resolve()
         if not file.is_relative_to(self.package):
             file = next(iter(sorted(self.package.glob(f"*/**/{path.name}"))), file)
         name = file.relative_to(self.package) if file.is_relative_to(self.package) else Path()
-        source = self.sources().get(name)
+        sources = self.sources()
+        source = sources.get(name)
         if source is None:
+            names = {each.name for each in sources}
+            same = {each for each in names if each[:2] == path.name[:2]}  # of one lesson's number
+            meant = difflib.get_close_matches(path.name, same or names, 1)
+            if meant:
+                raise LabError(f"{path} is no copy of a lesson's file: there is nothing to reset "
+                               f"it to; is {meant[0]} meant?")
             raise LabError(f"{path} is no copy of a lesson's file: there is nothing to reset it to")
         kept = file.with_name(f"{file.name}.{time.strftime('%Y%m%d-%H%M%S')}")
         while kept.exists():  # a double click: what was kept a moment ago is the learner's

@@ -62,7 +62,7 @@ def write_terminal(folder: Folder, master_uri: str) -> None:
         "[ ! -f ~/.bashrc ] || . ~/.bashrc\n"
         f". {shlex.quote(str(folder.path / 'devel/setup.bash'))}\n"
         f"export ROS_MASTER_URI={master_uri} ROS_HOSTNAME=localhost\n"
-        f'reset_lesson() {{ {lab} --reset "$@"; }}\n'
+        f'reset_lesson() {{ {lab} --reset "$*"; }}\n'
         "PS1='(lab) \\w\\$ '\n", "utf-8")
 
 
