@@ -17,6 +17,8 @@ from bullet_sim_ros.topic_faults import (
     Reports,
     Senders,
     contested,
+    mistyped,
+    typed,
     unheard,
     unseen,
 )
@@ -114,6 +116,31 @@ def test_a_camera_that_nobody_has_by_that_name():
     ({CAMERA: [ME], "/small/image": ["/resizer"]}, {"/small/image": ["/follower"]})])
 def test_images_that_come_or_are_none_of_ours_are_no_fault(publishers, subscribers):
     assert not lines(unseen(graph(publishers, subscribers), ME))
+
+
+def test_who_sends_a_type_that_is_not_taken_is_named_and_no_publisher():
+    types = {ME: {"/cmd_vel": TWIST, "/any": "*"},
+             "/pub": {"/cmd_vel": "std_msgs/String", "/any": FLOAT, "/free": FLOAT},
+             "/relay": {"/cmd_vel": "*"}, "/follower": {"/cmd_vel": TWIST}}
+    found = typed(
+        Graph({"/cmd_vel": ["/follower", "/pub", "/relay", "/hangs"], "/any": ["/pub"],
+               "/free": ["/pub"]},
+              {"/cmd_vel": [ME], "/any": [ME], "/free": ["/other"]},
+              {"/cmd_vel": "std_msgs/String", "/any": FLOAT, "/free": FLOAT}),
+        ME, lambda node, _call: types.get(node, {}))
+    assert lines(mistyped(found)) == [
+        f"/pub sends std_msgs/String on /cmd_vel, which takes {TWIST}, so none of it arrives: end "
+        f"it, and send {TWIST}"]
+    assert found.publishers == {"/cmd_vel": ["/follower", "/relay", "/hangs"], "/any": ["/pub"],
+                                "/free": ["/pub"]}
+    assert found.types["/cmd_vel"] == TWIST
+
+
+def test_a_robot_without_another_driver_is_still_idle():
+    found = typed(Graph({"/cmd_vel": ["/pub"], "/nav_vel": ["/planner"]}, {"/cmd_vel": [ME]},
+                        {"/cmd_vel": "std_msgs/String", "/nav_vel": TWIST}), ME,
+                  lambda node, _call: {"/cmd_vel": TWIST if node == ME else "std_msgs/String"})
+    assert lines(unheard(found, ME))[0].startswith("/planner sends commands on /nav_vel, but")
 
 
 def test_a_fault_is_said_once_after_a_while_and_again_only_much_later():

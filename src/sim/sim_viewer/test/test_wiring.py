@@ -10,15 +10,21 @@ TYPES = {"/cmd_vel": "geometry_msgs/Twist", "/vel": "geometry_msgs/Twist", CAMER
          "/tf": "tf2_msgs/TFMessage", "/scan": "sensor_msgs/LaserScan"}
 
 
-def told(publishers=(), subscribers=()):
-    """What is described of a waffle in the simulator and these besides."""
+def told(publishers=(), subscribers=(), sends=None):
+    """What is described of a waffle in the simulator and these besides.
+
+    `sends`: types by node and topic; the newest publisher's type is the master's.
+    """
     sent = {CAMERA: ["/gazebo"], "/scan": ["/gazebo"], "/tf": ["/gazebo"]}
     heard = {"/cmd_vel": ["/gazebo"]}
     for ends, more in ((sent, publishers), (heard, subscribers)):
         for topic, node in more:
             ends.setdefault(topic, []).append(node)
     services = {"/gazebo/pause_physics": ["/gazebo"]}
-    return describe(SystemState(sent, heard, services), TYPES, OWN)
+    answers = {"/gazebo": {"/cmd_vel": "geometry_msgs/Twist"}} | (sends or {})
+    types = TYPES | {topic: kind for each in (sends or {}).values() for topic, kind in each.items()}
+    return describe(SystemState(sent, heard, services), types, OWN,
+                    lambda node, _call: answers.get(node, {}))
 
 
 def test_a_followers_drive_is_rows_and_no_fault():
@@ -36,6 +42,17 @@ def test_two_drivers_are_a_fault_and_this_pages_keys_are_none():
     both = told([("/cmd_vel", "/follower"), ("/cmd_vel", "/teleop")])["faults"]
     assert [line[:47] for line in both] == ["/follower, /teleop may all send commands on /cm"]
     assert not told([("/cmd_vel", "/follower"), ("/cmd_vel", OWN + "_drive")])["faults"]
+
+
+def test_who_sends_a_wrong_type_is_no_driver_but_a_fault():
+    found = told([("/cmd_vel", "/follower"), ("/cmd_vel", "/rostopic_1")],
+                 sends={"/rostopic_1": {"/cmd_vel": "std_msgs/String"}})
+    assert found["faults"] == [
+        "/rostopic_1 sends std_msgs/String on /cmd_vel, which takes geometry_msgs/Twist, so none "
+        "of it arrives: end it, and send geometry_msgs/Twist"]
+    row = found["rows"][0]
+    assert (row["name"], row["type"], row["from"]) == (
+        "/cmd_vel", "geometry_msgs/Twist", ["/follower"])
 
 
 def test_a_rostopic_that_was_left_running_is_a_driver():

@@ -1,15 +1,17 @@
 """Names what is wrong with who sends and who hears: the faults that a learner cannot see.
 
-Two nodes that drive one robot, a command on a topic that nobody hears, an image that nobody
-publishes. Each is one warning once it has lasted for PATIENCE, in wall time.
+Two nodes that drive one robot, a command on a topic that nobody hears or of a type that is not
+taken there, an image that nobody publishes. Each is one warning once it has lasted for PATIENCE, in
+wall time.
 """
 
 import logging
 import re
 import threading
 import time
-from collections.abc import Hashable, Iterator
-from dataclasses import dataclass
+import xmlrpc.client
+from collections.abc import Callable, Hashable, Iterator
+from dataclasses import dataclass, replace
 from difflib import SequenceMatcher
 from http.client import HTTPException
 from typing import Any, NamedTuple
@@ -19,11 +21,14 @@ import rosgraph
 import rospy
 from rosgraph.masterapi import MasterException
 
+from bullet_sim_ros.already_running import ImpatientTransport
+
 log = logging.getLogger("bullet_sim.topics")
 
 PATIENCE = 5.0  # s that a fault lasts before it is said
 LOOK = 1.0      # s between two looks
 RECENT = 1.0    # s; who has sent within this time still drives
+ANSWER_TIME = 1.0  # s for a node's answer
 AGAIN = 60.0    # s until a fault that came back is said again
 COMMANDS = {"geometry_msgs/Twist", "geometry_msgs/Wrench", "std_msgs/Float64",
             "std_msgs/Float64MultiArray", "trajectory_msgs/JointTrajectory"}
@@ -31,6 +36,7 @@ SENSORS = {"sensor_msgs/Image", "sensor_msgs/CompressedImage", "sensor_msgs/Lase
            "sensor_msgs/PointCloud2", "sensor_msgs/Imu"}
 # These show what is missing; an anonymous node has numbers behind its name.
 SAID_ELSEWHERE = re.compile(r".*/(rviz|rqt_\w+|sim_viewer|record|rosout)(_\d+)*")
+ANY = "*"  # type of a node that takes or relays all
 ALIKE = 0.8  # of two names that may mean the same
 MOST = 5  # names in a line
 
@@ -45,11 +51,16 @@ class Fault(NamedTuple):
 
 @dataclass(frozen=True)
 class Graph:
-    """Nodes by topic, and each topic's type, as the master has them."""
+    """Nodes by topic, and each topic's type, as the master has them.
+
+    `mistyped`: nodes that are no publishers because the simulator takes another type from the
+    topic, each as (node, its type, topic, the type that is taken).
+    """
 
     publishers: dict[str, list[str]]
     subscribers: dict[str, list[str]]
     types: dict[str, str]
+    mistyped: tuple[tuple[str, str, str, str], ...] = ()
 
 
 class Senders:
@@ -85,6 +96,49 @@ def contested(senders: dict[str, list[str]], types: dict[str, str]) -> Iterator[
                     "%s send commands on %s at the same time, so the robot follows now one, now "
                     "the other: end one of them (Ctrl-C in its terminal, or rosnode kill)",
                     (", ".join(nodes), _listed(shared)))
+
+
+def typed(graph: Graph, me: str, ask: Callable[[str, str], dict[str, str]]) -> Graph:
+    """The graph with those who send what the simulator does not take as `mistyped`.
+
+    The master has one type of a topic, that of its newest publisher; `ask` a node by a call of its
+    API, getPublications or getSubscriptions, for its types by topic.
+    """
+    shared = {topic: [node for node in nodes if node != me]
+              for topic, nodes in graph.publishers.items()
+              if me in graph.subscribers.get(topic, [])}
+    senders = {node for nodes in shared.values() for node in nodes}
+    takes = ask(me, "getSubscriptions") if senders else {}
+    sends = {node: ask(node, "getPublications") for node in sorted(senders)}
+    wrong = tuple((node, sends[node][topic], topic, takes[topic])
+                  for topic, nodes in sorted(shared.items()) for node in nodes
+                  if ANY not in (takes.get(topic, ANY), sends[node].get(topic, ANY))
+                  and takes[topic] != sends[node][topic])
+    out = {(topic, node) for node, _, topic, _ in wrong}
+    publishers = {topic: [node for node in nodes if (topic, node) not in out]
+                  for topic, nodes in graph.publishers.items()}
+    return replace(graph, mistyped=wrong,
+                   publishers={topic: nodes for topic, nodes in publishers.items() if nodes},
+                   types=graph.types | {topic: taken for _, _, topic, taken in wrong})
+
+
+def mistyped(graph: Graph) -> Iterator[Fault]:
+    """Nodes that send what the simulator does not take there."""
+    for node, sent, topic, taken in graph.mistyped:
+        yield Fault(("mistyped", topic, node),
+                    "%s sends %s on %s, which takes %s, so none of it arrives: end it, and send %s",
+                    (node, sent, topic, taken, taken))
+
+
+def ask_node(node: str, call: str) -> dict[str, str]:
+    """What a node says of its topics, by a call of its API; nothing if it does not answer."""
+    try:
+        uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
+        api = xmlrpc.client.ServerProxy(uri, ImpatientTransport(ANSWER_TIME))
+        return {str(topic): str(kind) for topic, kind in getattr(api, call)(rospy.get_name())[2]}
+    except (OSError, MasterException, HTTPException, ExpatError, xmlrpc.client.Error,
+            LookupError, TypeError, ValueError):
+        return {}
 
 
 def unheard(graph: Graph, me: str) -> Iterator[Fault]:
@@ -166,16 +220,19 @@ def watch(senders: Senders) -> None:
 
 def _watch(senders: Senders) -> None:
     master, reports, me = rosgraph.Master(rospy.get_name()), Reports(), rospy.get_name()
-    graph, ended = Graph({}, {}, {}), threading.Event()
+    last = graph = Graph({}, {}, {})
+    ended = threading.Event()
     rospy.on_shutdown(ended.set)
     while not ended.wait(LOOK):
         try:
-            graph = _graph(master, graph)
+            now_there = _graph(master, last)
         except (OSError, MasterException, HTTPException, ExpatError):
             continue  # the master is busy, or has ended, which others say
+        if now_there is not last:
+            last, graph = now_there, typed(now_there, me, ask_node)
         now = time.monotonic()
-        faults = [*contested(senders.recent(now), graph.types), *unheard(graph, me),
-                  *unseen(graph, me)]
+        faults = [*contested(senders.recent(now), graph.types), *mistyped(graph),
+                  *unheard(graph, me), *unseen(graph, me)]
         for fault in reports.due(faults, now):
             log.warning(fault.text, *fault.values)
 

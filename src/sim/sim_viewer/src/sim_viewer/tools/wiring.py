@@ -1,12 +1,21 @@
 """Who talks to whom: a robot's inputs and sensors, and what is wrong there, in plain sentences."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import replace
 from typing import Any
 
 import rospy
 
-from bullet_sim_ros.topic_faults import COMMANDS, SENSORS, Graph, unheard, unseen
+from bullet_sim_ros.topic_faults import (
+    COMMANDS,
+    SENSORS,
+    Graph,
+    ask_node,
+    mistyped,
+    typed,
+    unheard,
+    unseen,
+)
 from sim_viewer.registry import watchable
 from sim_viewer.tools.graph import without_quiet
 from sim_viewer.tools.master import SystemState, simulator_name
@@ -26,19 +35,35 @@ class Wiring(Paced):
 
     PERIOD = 1.0
 
+    def open(self) -> None:
+        self._state: SystemState | None = None
+        self._answers: dict[tuple[str, str], dict[str, str]] = {}
+
     def collect(self) -> Any:
-        return self.changed(describe(self.master.state(), self.master.types(), rospy.get_name()))
+        state, types = self.master.state(), self.master.types()
+        if state != self._state:
+            self._state, self._answers = state, {}
+        return self.changed(describe(state, types, rospy.get_name(), self._ask))
+
+    def _ask(self, node: str, call: str) -> dict[str, str]:
+        """Once for each state of the master."""
+        if (node, call) not in self._answers:
+            self._answers[node, call] = ask_node(node, call)
+        return self._answers[node, call]
 
 
-def describe(state: SystemState, types: dict[str, str], own: str) -> dict[str, Any]:
+def describe(state: SystemState, types: dict[str, str], own: str,
+             ask: Callable[[str, str], dict[str, str]]) -> dict[str, Any]:
     """`{rows: [{name, type, part, from, to}], faults: [line], loose: [line]}`; this page is `own`.
+
+    `ask` a node for its topics' types, as ask_node does.
 
     A row is a topic of commands that somebody hears (`part` is `input`) or a sensor's that somebody
     sends; `from` and `to` are nodes without this page's. `loose` are other topics with one end.
     """
     simulator = simulator_name(state)
     seen = without_quiet(state, own, LOOKERS)
-    graph = Graph(seen.publishers, seen.subscribers, types)
+    graph = typed(Graph(seen.publishers, seen.subscribers, types), simulator, ask)
     rows = [{"name": topic, "type": types.get(topic, ""), "part": part,
              "from": graph.publishers.get(topic, []), "to": graph.subscribers.get(topic, [])}
             for part, kinds, ends in (("input", DRIVES, graph.subscribers),
@@ -47,7 +72,8 @@ def describe(state: SystemState, types: dict[str, str], own: str) -> dict[str, A
     # Commands that nobody hears are a fault, too, while somebody else drives.
     undriven = {topic: nodes for topic, nodes in graph.publishers.items()
                 if simulator not in graph.subscribers.get(topic, [])}
-    found = [*unheard(replace(graph, publishers=undriven), simulator), *unseen(graph, simulator)]
+    found = [*mistyped(graph), *unheard(replace(graph, publishers=undriven), simulator),
+             *unseen(graph, simulator)]
     faults = [*_rivals(rows), *(fault.text % fault.values for fault in found)]
     named = {topic for _which, topic, *_nodes in (fault.key for fault in found)}
     return {"rows": rows, "faults": faults[:MOST_LINES],
