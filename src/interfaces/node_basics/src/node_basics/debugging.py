@@ -17,6 +17,8 @@ REFUSED, INTERRUPTED = 2, 130
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Print one line only; --help shows the usage."""
+        if "required" in message:
+            message = "name a program: rosrun node_basics debug FILE [ARGUMENTS]"
         self.exit(REFUSED, f"debug: {message} (see: rosrun node_basics debug --help)\n")
 
 
@@ -77,6 +79,8 @@ def taken(port: int) -> str:
         trial.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             trial.bind((HERE, port))
+        except PermissionError:
+            return f"port {port} is root's: choose one from 1024, as {PORT} without --port"
         except OSError:
             return (f"port {port} is taken, perhaps by another program that is debugged: end that "
                     f"one, or choose a port: rosrun node_basics debug --port {port % 65535 + 1}")
