@@ -10,7 +10,7 @@ try:
 except ImportError:
     sys.exit(
         "pose_subscriber.py needs the package turtlesim, which is not in this workspace: "
-        "put one into src/, run catkin_make and source devel/setup.bash  缺少 turtlesim 功能包"
+        "put one into src/, run catkin_make and source devel/setup.bash"
     )
 
 

@@ -22,10 +22,14 @@ def done_callback(state, result):
 
 
 def main():
+    # rospy takes _num:=20 for the parameter ~num.  参数要这样写
+    for word in sys.argv[1:]:
+        if ":=" not in word or word.startswith("num:="):
+            sys.exit(f"action02_client.py: {word} is not read; type _num:=20 for the goal 20")
     rospy.init_node("action_client", anonymous=True)
     num = rospy.get_param("~num", 10)
     if type(num) is not int:
-        sys.exit(f"action02_client.py: ~num must be a whole number, not {num!r}  应为整数")
+        sys.exit(f"action02_client.py: ~num must be a whole number, not {num!r}")
     client = actionlib.SimpleActionClient("addInts", AddIntsAction)
     rospy.loginfo("waiting for addInts")
     if not client.wait_for_server():

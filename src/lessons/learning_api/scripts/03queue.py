@@ -18,7 +18,7 @@ def main():
     rospy.init_node("queue")
     size = rospy.get_param("~size", 1)
     if type(size) is not int or size < 1:
-        sys.exit(f"03queue.py: ~size must be a whole number from 1 on, not {size!r}  应为正整数")
+        sys.exit(f"03queue.py: ~size must be a whole number from 1 on, not {size!r}")
     rospy.Subscriber("number", Int32, number_callback, queue_size=size)
     publisher = rospy.Publisher("number", Int32, queue_size=100)
     while publisher.get_num_connections() == 0:  # earlier messages would be lost  否则会丢

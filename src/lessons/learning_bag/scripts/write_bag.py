@@ -19,7 +19,7 @@ def main():
             for count in range(3):
                 bag.write(TOPIC, String(data=f"hello {count}"))
     except OSError as error:
-        sys.exit(f"write_bag.py: {error}: run it in a folder of your own  请在自己的目录里运行")
+        sys.exit(f"write_bag.py: {error}: run it in a folder of your own")
     rospy.loginfo("wrote 3 messages on %s to %s", TOPIC, FILE)
 
 

@@ -16,12 +16,11 @@ def show_background():
         values = [rospy.get_param(name) for name in NAMES]
     except KeyError as error:
         sys.exit(f"parameter_config.py: no parameter {error}: turtlesim sets it as it starts; "
-                 "end it if it runs, and type rosrun turtlesim turtlesim_node  "
-                 "请启动（或重启）turtlesim")
+                 "end it if it runs, and type rosrun turtlesim turtlesim_node")
     for name, value in zip(NAMES, values, strict=True):
         if type(value) is not int:  # somebody has set it  有人改成了别的类型
             sys.exit(f"parameter_config.py: parameter {name} must be a whole number, not "
-                     f"{value!r}; type: rosparam set {name} 255  应为整数")
+                     f"{value!r}; type: rosparam set {name} 255")
     rospy.loginfo("background: r %d, g %d, b %d", *values)
 
 

@@ -18,7 +18,7 @@ def main():
     try:
         response = spawn(X, Y, THETA, NAME)
     except rospy.ServiceException as error:
-        sys.exit(f"no turtle: {error}: is there a {NAME} already?  是否已有同名海龟？")
+        sys.exit(f"no turtle: {error}: is there a {NAME} already?")
     rospy.loginfo("spawned: %s", response.name)
 
 

@@ -17,7 +17,7 @@ def main():
         response = rospy.ServiceProxy("/spawn", Spawn)(X, Y, THETA, NAME)
         rospy.loginfo("spawned: %s", response.name)
     except rospy.ServiceException as error:
-        sys.exit(f"no turtle: {error}: is there a {NAME} already?  是否已有同名海龟？")
+        sys.exit(f"no turtle: {error}: is there a {NAME} already?")
 
 
 if __name__ == "__main__":

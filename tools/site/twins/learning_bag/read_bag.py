@@ -16,7 +16,7 @@ def main():
     try:
         bag.open(StorageOptions(uri=folder, storage_id="mcap"), ConverterOptions("cdr", "cdr"))
     except RuntimeError as error:
-        sys.exit(f"read_bag.py: {error}: run write_bag.py here first  请先运行 write_bag.py")
+        sys.exit(f"read_bag.py: {error}: run write_bag.py here first")
     bag.set_filter(StorageFilter(topics=[TOPIC]))
     while bag.has_next():
         # The time at which the message was written, in ns.  时间是写入的时刻

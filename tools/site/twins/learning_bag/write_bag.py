@@ -18,7 +18,7 @@ def main():
     try:
         bag.open(StorageOptions(uri=FOLDER, storage_id="mcap"), ConverterOptions("", ""))
     except RuntimeError as error:
-        sys.exit(f"write_bag.py: {error}: run it in a folder of your own  请在自己的目录里运行")
+        sys.exit(f"write_bag.py: {error}: run it in a folder of your own")
     bag.create_topic(TopicMetadata(
         id=0, name=TOPIC, type="std_msgs/msg/String", serialization_format="cdr"))
     for count in range(3):

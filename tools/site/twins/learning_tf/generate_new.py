@@ -19,7 +19,7 @@ def main():
     future = client.call_async(Spawn.Request(x=X, y=Y, theta=THETA, name=NAME))
     rclpy.spin_until_future_complete(node, future)  # it does not wait by itself  调用本身不等待
     if not future.result().name:  # turtlesim's answer to a name in use
-        sys.exit(f"no turtle: is there a {NAME} already?  是否已有同名海龟？")
+        sys.exit(f"no turtle: is there a {NAME} already?")
     node.get_logger().info(f"spawned: {future.result().name}")
 
 
