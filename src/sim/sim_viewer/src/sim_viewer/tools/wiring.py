@@ -64,11 +64,12 @@ def describe(state: SystemState, types: dict[str, str], own: str,
     simulator = simulator_name(state)
     seen = without_quiet(state, own, LOOKERS)
     graph = typed(Graph(seen.publishers, seen.subscribers, types), simulator, ask)
-    rows = [{"name": topic, "type": types.get(topic, ""), "part": part,
+    rows = [{"name": topic, "type": graph.types.get(topic, ""), "part": part,
              "from": graph.publishers.get(topic, []), "to": graph.subscribers.get(topic, [])}
             for part, kinds, ends in (("input", DRIVES, graph.subscribers),
                                       ("sensor", SENSES, graph.publishers))
-            for topic in sorted(ends) if types.get(topic) in kinds and WINDOW not in topic]
+            for topic in sorted(ends)
+            if graph.types.get(topic) in kinds and WINDOW not in topic]
     # Commands that nobody hears are a fault, too, while somebody else drives.
     undriven = {topic: nodes for topic, nodes in graph.publishers.items()
                 if simulator not in graph.subscribers.get(topic, [])}
