@@ -67,7 +67,7 @@ explain() {
   fail_with_log "$1" "$2"
 }
 make_debian() {
-  local user=$1 new=$debian.new free line
+  local user=$1 new=$debian.new free line mounted
   mkdir -p "$place"
   exec 8< "$place"
   flock -n 8 || { say $"Another terminal is making this Debian: waiting for it."; flock 8; }
@@ -76,6 +76,8 @@ make_debian() {
     [ "$free" -ge "$disk_mb" ] || fail $"not enough disk space: $place has $free MB free, $disk_mb MB are needed"
     use_mirror "$state" "$release"
     install_debootstrap
+    mounted=$(awk -v at="$new/" 'index($2, at) == 1 {print $2}' /proc/self/mounts | sort -r)  # by a debootstrap that was killed
+    [ -z "$mounted" ] || xargs umount <<< "$mounted"
     rm -rf --one-file-system "$new" "$debian"
     doing=$"debootstrap is still running" logged debootstrap debootstrap --arch="$architecture" --variant=minbase --keyring="$keyring" \
       --include=ca-certificates,git,make,procps,sudo "$release" "$new" ${archive:+"$archive"} ||

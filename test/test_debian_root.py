@@ -202,6 +202,18 @@ def test_after_a_crash_in_the_middle_the_next_call_goes_on(tmp_path, roots_part_
     assert (machine.place / "debian/half").exists() == roots_part_lives
 
 
+@pytest.mark.skipif(os.getuid() != 0, reason="root alone may mount and change its root folder")
+def test_what_a_killed_debootstrap_mounted_is_unmounted(tmp_path):
+    machine = Machine(tmp_path, UBUNTU)
+    machine.forget_what_root_does()
+    (machine.place / "debian.new/proc").mkdir(parents=True)
+    done = subprocess.run(
+        ["unshare", "-m", "bash", "-c", 'mount -t tmpfs none "$0" && scripts/course.sh',
+         machine.place / "debian.new/proc"], cwd=tmp_path, text=True, capture_output=True,
+        timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def test_one_of_another_version_is_kept_and_entered_as_this_version_does(tmp_path):
     machine = Machine(tmp_path, UBUNTU)
     machine.forget_what_root_does()
