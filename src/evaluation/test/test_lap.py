@@ -137,3 +137,13 @@ def test_marks_are_where_laps_end_and_where_it_was_farthest_and_lost():
     assert [(mark.name, mark.text) for mark in marks_of(lost)] == [
         ("largest", "-0.300 m"), ("lost", lost.why)]
     assert marks_of(LapScorer(circle())) == []
+
+
+def test_who_stands_without_a_line_has_lost_it_where_it_began_to_stand():
+    scorer = LapScorer(circle())
+    angles = [min(i / RATE_HZ, 2.0) * SPEED for i in range(8 * RATE_HZ)]  # rad; stands from 2 s on
+    for i, angle in enumerate(angles):
+        scorer.add(on_circle(angle, 1.0, i / RATE_HZ))
+    lost = marks_of(scorer)[-1]
+    assert (lost.name, lost.text) == ("lost", scorer.why)
+    assert lost.time == pytest.approx(2.0, abs=0.1) and "stalled" in scorer.why

@@ -176,15 +176,17 @@ MOST_SECONDS = 999_999_999
 
 
 def marks_of(drive: LapScorer) -> list[Mark]:
-    """Each lap's end, where the car was farthest beside the line, and where it lost it."""
+    """Each lap's end, where the car was farthest beside the line, and where it lost it: left it, or
+    stands since then, as the lessons' programs do without a line."""
     times = [sample.time for sample in drive.samples]
     found = [Mark("lap", times[at], str(lap)) for at, (before, lap) in enumerate(
         itertools.pairwise(drive.lap_numbers), 1) if lap > before]
     if drive.laterals:
         farthest = max(range(len(times)), key=lambda each: abs(drive.laterals[each]))
         found.append(Mark("largest", times[farthest], f"{drive.laterals[farthest]:+.3f} m"))
-    if drive.verdict is Verdict.LEFT:
-        found.append(Mark("lost", times[-1], drive.why))
+    if drive.verdict in (Verdict.LEFT, Verdict.STALLED):
+        left = drive.verdict is Verdict.LEFT
+        found.append(Mark("lost", times[-1] if left else drive.last_progress, drive.why))
     return found
 
 

@@ -160,6 +160,11 @@ class LapScorer:
         """m along the line since the first sample; negative backwards."""
         return self._position - self._first_position
 
+    @property
+    def last_progress(self) -> float:
+        """s, when the car last came further along the line."""
+        return self._mark[0]
+
     def add(self, sample: Sample) -> Verdict:
         """Score one more sample."""
         nearest = self.track.nearest(sample.x, sample.y)

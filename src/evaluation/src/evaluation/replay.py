@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import queue
 import shutil
 import sys
@@ -26,7 +27,7 @@ from evaluation.run_page import RUN_PAGE
 from run_session import simulator
 from run_session.failure import RunError
 from run_session.launch import Launched
-from run_session.master import look_up
+from run_session.master import is_up, look_up
 from run_session.observer import missing_controller
 from run_session.session import LOG, Session
 
@@ -104,10 +105,12 @@ class Replay:
         self._on_log = False  # whether the world stands at that image
         self._orders: queue.SimpleQueue[Order] = queue.SimpleQueue()
 
-    def open(self, page: Sequence[str] | None) -> None:
-        """Start a master and, unless `page` is None, the page, with these arguments."""
+    def open(self, page: Sequence[str] | None, master: str = "") -> None:
+        """Start a master, or use this one, and, unless `page` is None, the page, with these
+        arguments."""
         self._launched = launched = self._session.launched(
-            "robot", self._of["driver"], environment=self._of["environment"], joined=True)
+            "robot", self._of["driver"], environment=self._of["environment"], joined=True,
+            master=master)
         launched.start_roscore()
         rospy.init_node(PROGRAM, anonymous=False, disable_signals=True, disable_rosout=True)
         for name, word in (("next_image", "n"), ("previous_image", "p")):
@@ -121,6 +124,9 @@ class Replay:
             launched.wait_for("the page in the browser",
                               lambda: rospy.has_param("/sim_viewer/url"), START_LIMIT)
             self._say(f"the page in the browser: {rospy.get_param('/sim_viewer/url')}")
+        if master:  # which goes on with other worlds
+            self._session.at_end(_forget)
+            return
         self._say("another terminal joins by: source devel/setup.bash; export "
                   f"ROS_MASTER_URI={launched.master_uri}")
 
@@ -293,6 +299,12 @@ class Replay:
         self._session.progress.say(text)
 
 
+def _forget() -> None:
+    for name in ("replay", "replay_to", "run_log", "run_log_of"):
+        with contextlib.suppress(KeyError, OSError, rosgraph.MasterException):
+            rospy.delete_param(f"/gazebo/{name}")
+
+
 def run(arguments: Sequence[str]) -> int:
     """Go there, and stay; returns the exit code."""
     parser = Parser(prog="replay.py", description="Go back to an image of a run in lockstep.",
@@ -307,6 +319,8 @@ def run(arguments: Sequence[str]) -> int:
     add("--control", action="store_true", help="the page may drive, pause and set")
     parser.add_whole("--port", 8080, "of the page", most=65535, least=1)
     add("--once", action="store_true", help="go there, say whether it is as in the run, and end")
+    add("--here", action="store_true",
+        help="at the ROS master of this terminal, which runs already, without a page of its own")
     add("--out", type=Path, default=Path("out/replay"), metavar="DIR",
         help="where logs go (out/replay)")
     options = parser.parse_args(arguments)
@@ -320,6 +334,9 @@ def run(arguments: Sequence[str]) -> int:
         raise RunError(f"{path} does not say how its run was started ({missing[0]}): only runs of "
                        "make course, race, track, lane and avoid can be gone back to")
     page = [f"port:={options.port}", f"control:={str(options.control).lower()}"]
+    master = os.environ.get("ROS_MASTER_URI", "") if options.here else ""
+    if options.here and not is_up(master):
+        raise RunError(f"no ROS master at {master or 'ROS_MASTER_URI'} (--here)")
     out = options.out.resolve()
     with (results_folder(PROGRAM, out), contextlib.ExitStack() as ended,
           Session(out) as session):
@@ -327,7 +344,7 @@ def run(arguments: Sequence[str]) -> int:
         ended.callback(replay.keep)
         if said:
             session.progress.say(said)
-        replay.open(None if options.once else page)
+        replay.open(None if options.once or options.here else page, master)
         try:
             replay.go_to(number)
         except NotThere as error:

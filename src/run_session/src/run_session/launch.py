@@ -35,11 +35,12 @@ class Launched:
     def __init__(
         self, family: Family, log_folder: Path, follower: str = "", vehicle: str = "car",
         alone: bool = False, environment: Mapping[str, str] = MappingProxyType({}),
-        joined: bool = False
+        joined: bool = False, master: str = ""
     ):
         """`alone`: in a network namespace of its own, where no other run chooses a port.
 
-        `environment`: further variables for all programs. `joined`: by other terminals."""
+        `environment`: further variables for all programs. `joined`: by other terminals.
+        `master`: the URI of one that runs already, and goes on."""
         self._family, self._follower, self._vehicle = family, follower, vehicle
         self.log_folder = log_folder
         _remove_logs(self.log_folder)
@@ -47,10 +48,11 @@ class Launched:
         # Held from choosing a port until roscore listens, so that no other run takes the same one;
         # if others join this master, until it has a simulator, which make viewer then finds.
         self._joined = joined
-        turn = log_folder if alone else Path(tempfile.gettempdir())
+        turn = log_folder if alone or master else Path(tempfile.gettempdir())
         self._turn = take_turn(turn / f"course_run-{os.getuid()}.lock")
         self.port, self.why_not_callers = own_port(joined)  # the caller's master
-        self.master_uri = f"http://{LOOPBACK if alone else 'localhost'}:{self.port}"
+        self._runs = bool(master)
+        self.master_uri = master or f"http://{LOOPBACK if alone else 'localhost'}:{self.port}"
         self._environment = dict(
             os.environ,
             ROS_MASTER_URI=self.master_uri,
@@ -70,7 +72,8 @@ class Launched:
         """Start roscore and wait until it is up; this process's nodes then use it."""
         for name in ("ROS_MASTER_URI", "ROS_HOME"):
             os.environ[name] = self._environment[name]
-        self.start(Path(ROSCORE_LOG).stem, ["roscore", "-p", str(self.port)])
+        if not self._runs:
+            self.start(Path(ROSCORE_LOG).stem, ["roscore", "-p", str(self.port)])
         self.wait_for("roscore", lambda: is_up(self.master_uri), ROSCORE_TIME)
         if not self._joined:
             self._turn.close()

@@ -164,14 +164,15 @@ class Session:
         self._at_end.callback(act)
 
     def launched(self, vehicle: str, driver: str = "", alone: bool = False,
-                 environment: Mapping[str, str] | None = None, joined: bool = False) -> Launched:
+                 environment: Mapping[str, str] | None = None, joined: bool = False,
+                 master: str = "") -> Launched:
         """This run's own ROS master and launch files; logs go to OUT/log.
 
         `alone`: in a network namespace of its own; `environment`: further variables; `joined`: by
-        other terminals.
+        other terminals; `master`: the URI of one that runs already.
         """
         return Launched(self.family, self.out / LOG, driver, vehicle, alone, environment or {},
-                        joined)
+                        joined, master)
 
     def drive(self, command: list[str], folder: Path, what: str, limit: float,
               environment: Mapping[str, str] | None = None) -> dict:
