@@ -1,136 +1,29 @@
 """`make lab`: who gets in, what is laid out, what its buttons do, and what is left at its end."""
 
 import asyncio
-import contextlib
 import errno
 import itertools
 import json
-import os
 import re
-import shutil
-import signal
-import socket
 import subprocess
 import sys
-import time
 import urllib.error
 import urllib.parse
 import urllib.request
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 
 import aiohttp
 import psutil
 import pytest
 import yaml
+from running_lab import LIMIT, ROOT, SCRIPTS, TOOL, ended, free_port, page_port, started
 
 pytestmark = pytest.mark.processes
-ROOT = Path(__file__).resolve().parent.parent
-TOOL = ROOT / "tools/lab"
-LIMIT = 180.0  # s
-SCRIPTS = "src/my_lessons/scripts/learning_topic"
-sys.path.append(str(ROOT / "src/sim/sim_viewer/test"))
 sys.path.append(str(TOOL))
+import courses_lab  # noqa: E402
 import folder  # noqa: E402
 import settings  # noqa: E402
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-def wait_until(look, what: str, limit: float = LIMIT):
-    until = time.monotonic() + limit
-    while not (found := look()):
-        assert time.monotonic() < until, f"no {what} within {limit} s"
-        time.sleep(0.1)
-    return found
-
-
-@dataclass
-class Lab:
-    """A running one: its process, output, folder, and what its address says."""
-
-    process: subprocess.Popen
-    output: Path
-    ws: Path
-    base: str = ""
-    token: str = ""
-
-    def ask(self, path: str, body: dict | None = None, token: str | None = None,
-            method: str | None = None) -> tuple[int, dict | list | str]:
-        """Status and answer of the lab's server; `token`: another than its own, "" for none."""
-        shown = self.token if token is None else token
-        request = urllib.request.Request(
-            self.base + path, data=None if body is None else json.dumps(body).encode(),
-            headers={"Authorization": f"token {shown}"} if shown else {}, method=method)
-        try:
-            with urllib.request.urlopen(request, timeout=60) as answer:
-                status, text = answer.status, answer.read().decode()
-        except urllib.error.HTTPError as error:
-            status, text = error.code, error.read().decode()
-        try:
-            return status, json.loads(text)
-        except ValueError:
-            return status, text
-
-    def do(self, act: str, what: str) -> tuple[int, dict]:
-        return self.ask("/courses/do", {"act": act, "what": what})
-
-    def shown(self, terminal: str, pattern: str) -> str:
-        """The terminal's text, once it is there and the pattern is in it."""
-        wait_until(lambda: any(each["name"] == terminal for each in self.ask("/api/terminals")[1]),
-                   f"terminal {terminal}")
-        return asyncio.run(self._shown(terminal, pattern))
-
-    async def _shown(self, terminal: str, pattern: str) -> str:
-        text = ""
-        address = f"{self.base}/terminals/websocket/{terminal}?token={self.token}"
-        with contextlib.suppress(TimeoutError):
-            async with (asyncio.timeout(LIMIT), aiohttp.ClientSession() as http,
-                        http.ws_connect(address) as link):
-                async for message in link:
-                    kind, *rest = json.loads(message.data)
-                    text += rest[0] if kind == "stdout" else ""
-                    if re.search(pattern, text, re.DOTALL):
-                        return text
-        raise AssertionError(f"no {pattern} in the terminal {terminal}: {text}")
-
-    def master(self) -> str:
-        text = (self.ws / ".lab/bashrc").read_text()
-        return re.search(r"ROS_MASTER_URI=(\S+)", text)[1]
-
-
-def started(folder: Path, *words: str, language: str = "en") -> Lab:
-    """A lab that has printed its address, or has ended."""
-    folder.mkdir(exist_ok=True)
-    output, ws = folder / "output.txt", folder / "ws"
-    env = {**os.environ, "HOME": str(folder), "LANGUAGE": language}
-    for name in ("ROS_MASTER_URI", "DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
-        env.pop(name, None)
-    with output.open("wb") as file:
-        process = subprocess.Popen([sys.executable, TOOL, "--ws", ws, *words], env=env,
-                                   stdout=file, stderr=subprocess.STDOUT,
-                                   stdin=subprocess.DEVNULL, start_new_session=True)
-    lab = Lab(process, output, ws)
-    found = wait_until(lambda: re.search(r"lab: (http://\S+)/lab\?token=(\S+)", output.read_text())
-                       or process.poll() is not None, "address")
-    assert found is not True, output.read_text()
-    lab.base, lab.token = found[1], found[2]
-    return lab
-
-
-def ended(lab: Lab) -> int:
-    """End it by Ctrl-C; its exit code. No process of it may be left."""
-    family = psutil.Process(lab.process.pid).children(recursive=True)
-    lab.process.send_signal(signal.SIGINT)
-    code = lab.process.wait(LIMIT)
-    left = psutil.wait_procs(family, timeout=30)[1]
-    assert not left, left
-    return code
 
 
 @pytest.fixture(scope="module")
@@ -138,11 +31,6 @@ def lab(tmp_path_factory):
     lab = started(tmp_path_factory.mktemp("lab"), "--port", str(free_port()))
     yield lab
     assert ended(lab) == 0, lab.output.read_text()
-
-
-def page_port(lab: Lab) -> int:
-    config = json.loads((lab.ws / ".lab/config.json").read_text())
-    return config["ServerProxy"]["servers"]["simulator"]["port"]
 
 
 def words(process: psutil.Process) -> list[str]:
@@ -204,7 +92,7 @@ def test_the_first_start_lays_out_page_script_world_and_terminal(lab):
 def test_every_tile_leads_somewhere(lab):
     menu = lab.ask("/courses/menu")[1]
     assert [course["name"] for course in menu["courses"]] == [
-        "line", "racecar", "house", "lanes", "tracking", "autorace", "turtlesim"]
+        "line", "waits", "racecar", "house", "lanes", "tracking", "autorace", "turtlesim"]
     courses = yaml.safe_load((TOOL / "lessons.yaml").read_text("utf-8"))["courses"]
     assert all(course["zh"] for course in courses.values())
     for entry in menu["lessons"] + menu["exercises"]:
@@ -273,6 +161,13 @@ def test_the_pages_are_read_only_and_ours_are_not_in_reach(lab):
                 and path.name != "CMakeLists.txt"]
 
 
+def test_an_image_of_the_marked_lap_is_gone_back_to_in_the_course_s_terminal(lab):
+    assert lab.do("back", "lost") == (200, {"terminal": "course"})
+    lab.shown("course", r"replay: no run at out/course")
+    command = courses_lab.command_of("back", folder.Folder(lab.ws), "12.5; ls")
+    assert command.endswith("replay.py --here --run out/course --at '12.5; ls'")
+
+
 def test_a_full_disk_leaves_no_half_of_a_lesson(tmp_path, monkeypatch):
     own = folder.Folder(tmp_path)
     (own.package / "devel").mkdir(parents=True)
@@ -335,42 +230,6 @@ def refused(*words: str) -> str:
     assert done.returncode == 2
     assert done.stderr.startswith("lab: ") and done.stderr.count("\n") == 1, done.stderr
     return done.stderr
-
-
-CLICK = """(() => {
-  const one = [...document.querySelectorAll(%r)].find((each) => each.textContent.trim() === %r);
-  one?.click();
-  return Boolean(one);
-})()"""
-
-
-@pytest.mark.skipif(not shutil.which("chromium"), reason="no Chromium")
-def test_in_the_browser_from_the_first_page_to_a_robot_that_drives(lab):
-    import chromium
-
-    def odometry() -> float:
-        done = subprocess.run(["rostopic", "echo", "-n", "1", "/odom/pose/pose/position/x"],
-                              env={**os.environ, "ROS_MASTER_URI": lab.master()}, timeout=LIMIT,
-                              capture_output=True, text=True, check=True)
-        return float(done.stdout.split()[0])
-
-    browser = chromium.Browser()
-    try:
-        page = browser.open(f"{lab.base}/lab?token={lab.token}")
-        page.resize(1400, 900)
-        for shown in (".jp-MarkdownViewer h1", ".jp-FileEditor", ".jp-Terminal", "iframe"):
-            page.wait_for(f"document.querySelector({shown!r}) !== null", LIMIT)
-        page.wait_for(CLICK % (".jp-LauncherCard", "Line course"), LIMIT)
-        lab.shown("course", "process.*gazebo")
-        page.wait_for("/[1-9]/.test(document.querySelector('iframe').contentDocument"
-                      ".querySelector('#simulation')?.textContent)", LIMIT)
-        assert abs(odometry()) < 0.01
-        assert page.evaluate(CLICK % (".jp-Toolbar jp-button", "Run"))
-        wait_until(lambda: odometry() > 0.05, "robot that drives")
-        # The browser asks for a page's pictures once before JupyterLab has put their addresses.
-        assert not [error for error in page.errors if "/images/" not in error]
-    finally:
-        browser.close()
 
 
 def test_what_cannot_be_is_one_line(lab, tmp_path):

@@ -11,18 +11,16 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import http.client
+import json
 import os
 import secrets
+import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from types import FrameType
-from typing import NoReturn
 
 import rosgraph
 from folder import Folder, LabError
@@ -31,12 +29,10 @@ from sim_viewer.options import TOKEN
 from terminal_language.wanted import wanted_language
 
 from run_session.failure import RunError
-from run_session.master import free_port, is_up, own_port, take_turn
+from run_session.master import free_port
 
-FIRST_PORT, PORTS_TRIED = 8888, 100
-PAGE_PORT = 8080
 HERE = Path(__file__).resolve().parent
-START_TIME = 60.0  # s, wall, for each of master, page and JupyterLab
+START_TIME = 120.0  # s, wall, for page and JupyterLab each
 END_TIME = 20.0  # s, wall, for each of them to end
 PERIOD = 0.1  # s, wall, between two looks
 
@@ -50,36 +46,27 @@ class Lab:
 
     def start(self, wished: int | None, browser: bool) -> str:
         """Start all; returns the address with the token. LabError or RunError if one fails."""
-        master, page_token = self._start_master(), secrets.token_urlsafe(24)
+        # At any free ports: only the lab's own terminals and its address lead there.
+        master, page_token = f"http://localhost:{free_port(0)}", secrets.token_urlsafe(24)
         env = {"ROS_MASTER_URI": master, "ROS_HOSTNAME": "localhost"}
         self._run("page", "roslaunch", "sim_viewer", "viewer.launch", "control:=true",
-                  f"port:={free_port(PAGE_PORT)}", env=env | {TOKEN: page_token})
+                  f"port:={free_port(0)}", env=env | {TOKEN: page_token})  # and its master
         self._folder.fill()  # while the page starts
         page_port = int(self._wait("page", lambda: _page_url(master)).rstrip("/").split(":")[-1])
         write_terminal(self._folder, master)
         lay_out(self._folder, self._language)
-        while True:
-            port, token = choose_port(wished), secrets.token_urlsafe(24)
-            config = write_settings(self._folder, self._language, port, token, page_port,
-                                    page_token, browser)
-            try:
-                self._start_jupyter(config, env, port, token)
-                return f"http://127.0.0.1:{port}/lab?token={token}"
-            except LabError:
-                if wished is not None or free_port(port) == port:
-                    raise
-                self._children.pop()  # another lab that starts was there first
-
-    def _start_jupyter(self, config: Path, env: dict[str, str], port: int, token: str) -> None:
-        state = self._folder.state
-        self._run("jupyter", sys.executable, "-m", "jupyterlab", f"--config={config}",
-                  env=env | {"LAB_LANGUAGE": self._language, "PYTHONPATH": os.pathsep.join(
-                      [str(HERE), os.environ.get("PYTHONPATH", "")]),
-                      "JUPYTER_CONFIG_DIR": str(state / "config"),
-                      "JUPYTER_DATA_DIR": str(state / "data"),
-                      "JUPYTER_RUNTIME_DIR": str(state / "runtime"),
-                      "IPYTHONDIR": str(state / "ipython")})
-        self._wait("jupyter", lambda: _answers(port, token))
+        token, runtime = secrets.token_urlsafe(24), self._folder.state / "runtime"
+        shutil.rmtree(runtime, ignore_errors=True)  # a killed lab's
+        config = write_settings(self._folder, self._language, page_port, page_token, browser,
+                                wished, token)
+        own = {f"JUPYTER_{name.upper()}_DIR": str(self._folder.state / name)
+               for name in ("config", "data", "runtime")}
+        self._run(
+            "jupyter", sys.executable, "-m", "jupyterlab", f"--config={config}", env=env | own | {
+                "LAB_LANGUAGE": self._language, "IPYTHONDIR": str(self._folder.state / "ipython"),
+                "PYTHONPATH": os.pathsep.join([str(HERE), os.environ.get("PYTHONPATH", "")])})
+        port = self._wait("jupyter", lambda: _listening(runtime))
+        return f"http://127.0.0.1:{port}/lab?token={token}"
 
     def wait(self) -> str:
         """Until one of them ends; its name."""
@@ -104,16 +91,6 @@ class Lab:
                 os.killpg(child.pid, signal.SIGKILL)
                 child.wait()
 
-    def _start_master(self) -> str:
-        # The turn that all commands take who choose a port for a master (take_turn of common.sh).
-        folder = Path(os.environ.get("TMPDIR") or tempfile.gettempdir())
-        with take_turn(folder / f"course_run-{os.getuid()}.lock"):
-            port, _ = own_port(joined=True)
-            self._run("master", "roscore", "-p", str(port), env={})
-            uri = f"http://localhost:{port}"
-            self._wait("master", lambda: is_up(uri))
-        return uri
-
     def _run(self, name: str, *command: str, env: dict[str, str]) -> None:
         # In a session of its own: Ctrl-C is for the lab, which then ends them one by one.
         with open(self.log(name), "w", encoding="utf-8") as log:
@@ -122,7 +99,7 @@ class Lab:
                 stderr=log, stdin=subprocess.DEVNULL, start_new_session=True,
                 env=os.environ | env)))
 
-    def _wait(self, name: str, look: Callable[[], str | bool]) -> str:
+    def _wait(self, name: str, look: Callable[[], str | int]) -> str:
         child, until = dict(self._children)[name], time.monotonic() + START_TIME
         while not (found := look()):
             if child.poll() is not None or time.monotonic() > until:
@@ -137,36 +114,20 @@ def _page_url(master: str) -> str:
     return ""
 
 
-def _answers(port: int, token: str) -> bool:
-    """Whether our own Jupyter server answers there, and no other."""
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=START_TIME)
-    try:
-        connection.request("GET", "/courses/menu", headers={"Authorization": f"token {token}"})
-        return connection.getresponse().status == 200
-    except (OSError, http.client.HTTPException):
-        return False
-    finally:
-        connection.close()
+def _listening(runtime: Path) -> int:
+    """The port on which Jupyter's server listens; 0: not yet."""
+    with contextlib.suppress(StopIteration, ValueError, KeyError):  # not there, or not whole
+        return json.loads(next(runtime.glob("jpserver-*.json")).read_text("utf-8"))["port"]
+    return 0
 
 
-def choose_port(wished: int | None) -> int:
-    """The port wished for, or the first free one from 8888; LabError if there is none."""
-    if wished is not None:
-        if not 1024 <= wished <= 65535:
-            raise LabError(f"port is {wished}; give one from 1024 to 65535, such as PORT=8889")
-        if free_port(wished) != wished:
-            raise LabError(f"port {wished} is taken: name another, such as PORT={wished + 1}, "
-                           "or none, for the first free one")
-        return wished
-    for port in range(FIRST_PORT, FIRST_PORT + PORTS_TRIED):
-        if free_port(port) == port:
-            return port
-    raise LabError(f"ports {FIRST_PORT} to {FIRST_PORT + PORTS_TRIED - 1} are all taken: name "
-                   "another, such as PORT=9000")
-
-
-def _interrupted(number: int, frame: FrameType | None) -> NoReturn:
-    raise KeyboardInterrupt
+def check_port(wished: int) -> None:
+    """LabError if it cannot be had."""
+    if not 1024 <= wished <= 65535:
+        raise LabError(f"port is {wished}; give one from 1024 to 65535, such as PORT=8889")
+    if free_port(wished) != wished:
+        raise LabError(f"port {wished} is taken: name another, such as PORT={wished + 1}, "
+                       "or none, for the first free one")
 
 
 def _has_browser() -> bool:
@@ -185,12 +146,13 @@ def main() -> int:
     language = "zh" if wanted_language(dict(os.environ)) else "en"
     lab = Lab(folder, language)
     for number in (signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, _interrupted)
+        signal.signal(number, signal.default_int_handler)
     try:
         if given.reset is not None:
             print(f"lab: reset; your version is kept as {folder.reset(Path(given.reset))}")
             return 0
-        choose_port(given.port)  # before anything is made
+        if given.port is not None:
+            check_port(given.port)  # before anything is made
         with folder.take() as lock:
             try:
                 print(f"The lab is starting; your files are in {folder.package}", flush=True)

@@ -1,7 +1,8 @@
 """The lab's part of the Jupyter server: what its tiles and buttons do, in terminals that stay.
 
     GET  /courses/menu   what there is to start, open and check, in the lab's language
-    POST /courses/do     {"act": ..., "path": ...}: run, lap, check, reset, or course with a name
+    POST /courses/do     {"act": ..., "what": ...}: run, lap or reset a file, check an exercise,
+                         start a course, go back to an image of the marked lap
 
 An act types a command into its terminal, where Ctrl-C first ends what still runs there.
 """
@@ -25,12 +26,14 @@ from tornado import web
 from exercises.catalogue import find_exercises
 
 READY = "(lab) "  # how the prompt begins
-START_TIME = 30.0  # s until a new terminal has a prompt
+START_TIME = 60.0  # s until a new terminal has a prompt
 END_TIME = 20.0  # s that what runs may take to end after Ctrl-C
 BEGIN_TIME = 3.0  # s until the shell has started it
 PERIOD = 0.1  # s between two looks
+PROGRAMS = ROOT / "src/evaluation/scripts"
 RUNNERS = {".py": "python3", ".launch": "roslaunch", ".sh": "bash"}
-TERMINALS = {"course": "course", "run": "run", "lap": "run", "check": "check"}  # by act
+TERMINALS = {"course": "course", "back": "course", "run": "run", "lap": "run", "check": "check"}
+MARKED = "out/course"  # where a marked lap's results are, below the folder
 
 
 class Terminals:
@@ -82,14 +85,17 @@ def command_of(act: str, folder: Folder, what: str) -> str:
         own = f"src/{PACKAGE}/exercises/{exercise.start.name}"
         file = own if (folder.path / own).exists() else str(exercise.start)
         return shlex.join(["rosrun", "exercises", "check_exercise", what, file])
+    if act == "back":  # in the course's terminal: there is one world at a time
+        return shlex.join(["python3", str(PROGRAMS / "replay.py"), "--here", "--run", MARKED,
+                           "--at", what])
     file = (folder.path / what).resolve()
     if not (file.is_relative_to(folder.path) and file.is_file()):
         raise LabError(f"there is no file {what}")
     if act == "lap":
         return shlex.join([
-            "python3", str(ROOT / "src/evaluation/scripts/course_run.py"), "--fast", "--any-port",
-            "--no-video", "--out", "out/course", "--launch", PACKAGE, "course_follow.launch",
-            "--launch-arg", f"follower:={file.name}"])
+            "python3", str(PROGRAMS / "course_run.py"), "--fast", "--any-port", "--no-video",
+            "--out", MARKED, "--launch", "learning_topic", "course_follow.launch",
+            "--launch-arg", f"package:={PACKAGE}", "--launch-arg", f"follower:={file.name}"])
     if file.suffix not in RUNNERS:
         raise LabError(f"{file.name} cannot be run: open a file that ends in "
                        f"{', '.join(RUNNERS)}")
@@ -110,7 +116,7 @@ def menu(folder: Folder, language: str) -> dict[str, Any]:
               if exercise.start.suffix == ".py"
               and (folder.path / page_of(exercise.file.parent.name, language)).exists()]
     return {"texts": {key: text[language] for key, text in table["texts"].items()},
-            "lessons": lessons, "exercises": checks, "marks": "out/course",
+            "lessons": lessons, "exercises": checks, "marks": MARKED,
             "courses": [{"name": name, "label": course[language]}
                         for name, course in table["courses"].items()]}
 

@@ -8,7 +8,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import difflib
 import errno
 import fcntl
@@ -16,11 +15,10 @@ import os
 import shutil
 import subprocess
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any
 
-from node_basics.records import check_keys, read_yaml
+import yaml
 
 from exercises.catalogue import find_exercises
 
@@ -29,7 +27,6 @@ OFFERS = Path(__file__).with_name("lessons.yaml")
 PACKAGE = "my_lessons"
 DEPENDS = ("rospy", "cv_bridge", "geometry_msgs", "sensor_msgs", "std_msgs", "learning_topic")
 PAGES = ("README*.md", "THEORY*.md", "images/*")
-FOLLOW = ROOT / "src/learning_topic/launch/course_follow.launch"
 
 
 class LabError(Exception):
@@ -37,19 +34,8 @@ class LabError(Exception):
 
 
 def offers() -> dict[str, Any]:
-    """The table lessons.yaml; LabError names file and key of an error."""
-    table = read_yaml(OFFERS, LabError)
-    check_keys(OFFERS, table, ("courses", "lessons", "texts"), LabError)
-    for name, course in table["courses"].items():
-        check_keys(f"{OFFERS}: courses: {name}", course, ("en", "zh", "command"), LabError)
-    for name, text in table["texts"].items():
-        check_keys(f"{OFFERS}: texts: {name}", text, ("en", "zh"), LabError)
-    for package, lesson in table["lessons"].items():
-        place = f"{OFFERS}: lessons: {package}"
-        check_keys(place, lesson, ("course", "scripts"), LabError)
-        if lesson["course"] not in table["courses"]:
-            raise LabError(f"{place}: course: there is no course {lesson['course']!r}")
-    return table
+    """The table lessons.yaml."""
+    return yaml.safe_load(OFFERS.read_text("utf-8"))
 
 
 def source_of(package: str) -> Path:
@@ -107,12 +93,6 @@ class Folder:
             if not copy.exists():
                 copy.parent.mkdir(parents=True, exist_ok=True)
                 _copy(source, copy)
-        follow = self.package / "launch" / FOLLOW.name
-        if not follow.exists():
-            follow.parent.mkdir(exist_ok=True)
-            with _replacing(follow) as fresh:
-                fresh.write_text(FOLLOW.read_text("utf-8").replace(
-                    'pkg="learning_topic"', f'pkg="{PACKAGE}"'), "utf-8")
         if not (self.path / "devel/setup.bash").exists():
             self._run("catkin_make", folder=self.path)
         self._copy_pages()
@@ -167,19 +147,13 @@ class Folder:
             raise LabError(f"{command[0]} failed in {folder}; its output is in {log}")
 
 
-@contextlib.contextmanager
-def _replacing(file: Path) -> Iterator[Path]:
-    """Where to write a file that is whole or not there at all, should the disk be full."""
+def _copy(source: Path, file: Path) -> None:
+    """Whole or not at all, should the disk be full."""
     fresh = file.with_name(f".{file.name}.new")
     try:
-        yield fresh
+        shutil.copy(source, fresh)
         fresh.replace(file)
     except OSError as error:  # shutil names the file that was read
         raise OSError(error.errno, error.strerror, str(file)) from error
     finally:
         fresh.unlink(missing_ok=True)
-
-
-def _copy(source: Path, file: Path) -> None:
-    with _replacing(file) as fresh:
-        shutil.copy(source, fresh)

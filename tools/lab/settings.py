@@ -6,9 +6,10 @@ import json
 import shlex
 from pathlib import Path
 
-from folder import PACKAGE, ROOT, Folder, offers
+from folder import PACKAGE, ROOT, Folder, offers, source_of
 from jupyterlab_server.workspaces_handler import WorkspacesManager
 
+FIRST_PORT, TRIED = 8888, 100
 HERE = Path(__file__).resolve().parent
 FIRST = "05follower_proporation.py"  # the lesson that is open at first: the first one that drives
 EXTENSIONS = ("jupyterlab", "jupyter_server_proxy", "jupyter_server_terminals", "courses_lab")
@@ -16,14 +17,18 @@ TITLES = {"en": "World", "zh": "仿真世界"}
 SIMULATOR = "server-proxy:simulator"  # as jupyter-server-proxy calls the tab of its server
 
 
-def write_settings(folder: Folder, language: str, port: int, token: str, page_port: int,
-                   page_token: str, browser: bool) -> Path:
-    """Write all of them; returns the configuration file, which has both tokens."""
+def write_settings(folder: Folder, language: str, page_port: int, page_token: str, browser: bool,
+                   port: int | None, token: str) -> Path:
+    """Write all of them; returns the configuration file, which has both tokens.
+
+    `port`: None for the first free one.
+    """
     texts = offers()["texts"]
     config = {
         "ServerApp": {
-            "ip": "127.0.0.1", "port": port, "port_retries": 0, "root_dir": str(folder.path),
-            "open_browser": browser, "allow_root": True, "log_level": "WARN",
+            "ip": "127.0.0.1", "port": port or FIRST_PORT, "port_retries": 0 if port else TRIED,
+            "root_dir": str(folder.path), "open_browser": browser, "allow_root": True,
+            "log_level": "WARN",
             "jpserver_extensions": dict.fromkeys(EXTENSIONS, True),
             "terminado_settings": {"shell_command": [
                 "bash", "--rcfile", str(folder.state / "bashrc")]},
@@ -71,15 +76,14 @@ def lay_out(folder: Folder, language: str) -> None:
     manager = WorkspacesManager(str(folder.state / "workspaces"))
     if manager.list_workspaces():
         return
-    end = {"en": "", "zh": ".zh-CN"}[language]
-    page = f"pages/src/learning_topic/README{end}.md"
+    page = page_of("learning_topic", language)
     script = f"src/{PACKAGE}/scripts/learning_topic/{FIRST}"
     widgets = {
         f"markdownviewer-widget:{page}": {"path": page, "factory": "Markdown Preview"},
         f"editor:{script}": {"path": script, "factory": "Editor"},
         f"server-proxy:{SIMULATOR}": {
-            "url": f"/simulator/?{language}", "title": TITLES[language], "newBrowserTab": False,
-            "id": SIMULATOR},
+            "url": f"/simulator/?{language}", "title": TITLES[language],
+            "newBrowserTab": False, "id": SIMULATOR},
         "terminal:1": {"name": "1"},
     }
     tabs = [{"type": "tab-area", "currentIndex": 0, "widgets": [name]} for name in widgets]
@@ -97,5 +101,5 @@ def lay_out(folder: Folder, language: str) -> None:
 
 def page_of(package: str, language: str) -> str:
     """The lesson's page in that language, below the learner's folder."""
-    place = "src" if (ROOT / "src" / package).is_dir() else "src/lessons"
-    return f"pages/{place}/{package}/README{'.zh-CN' if language == 'zh' else ''}.md"
+    end = ".zh-CN" if language == "zh" else ""
+    return f"pages/{source_of(package).relative_to(ROOT)}/README{end}.md"

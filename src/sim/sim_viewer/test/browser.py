@@ -139,6 +139,18 @@ class Page(abc.ABC):
     def key(self, key: str, down: bool) -> None:
         """A key goes down or comes up, as from a keyboard."""
 
+    def press(self, *keys: str) -> None:
+        """Keys held together, the last one struck, as Control and Home."""
+        for key in keys:
+            self.key(key, True)
+        for key in reversed(keys):
+            self.key(key, False)
+
+    def type(self, text: str) -> None:
+        """Keys that write, for what has the focus."""
+        for letter in text:
+            self.press({"\n": "Enter"}.get(letter, letter))
+
     @abc.abstractmethod
     def mouse(self, kind: str, x: float, y: float, button: str = "left") -> None:
         """`kind`: Pressed, Moved, Released, of the left or right button; px of the page."""

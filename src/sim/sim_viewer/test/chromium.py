@@ -22,7 +22,9 @@ CODES = {  # of the keys that drive or change a drag: name of the place, Windows
     **{key: (f"Key{key.upper()}", ord(key.upper())) for key in "wasd"},
     "ArrowLeft": ("ArrowLeft", 37), "ArrowUp": ("ArrowUp", 38),
     "ArrowRight": ("ArrowRight", 39), "ArrowDown": ("ArrowDown", 40), " ": ("Space", 32),
-    "Control": ("ControlLeft", 17), "Shift": ("ShiftLeft", 16),
+    "Control": ("ControlLeft", 17), "Shift": ("ShiftLeft", 16), "Enter": ("Enter", 13),
+    "End": ("End", 35), "Home": ("Home", 36), "F5": ("F5", 116),
+    "PageDown": ("PageDown", 34),
 }
 MODIFIERS = {"Control": 2, "Shift": 8}  # bits of those that are held
 
@@ -101,6 +103,14 @@ class Page(browser.Page):
         self._modifiers = self._modifiers | bit if down else self._modifiers & ~bit
         self.call("Input.dispatchKeyEvent", type="rawKeyDown" if down else "keyUp", key=key,
                   code=code, windowsVirtualKeyCode=number, modifiers=self._modifiers)
+
+    def type(self, text: str) -> None:
+        for letter in text:
+            key, written = ("Enter", "\r") if letter == "\n" else (letter, letter)
+            code, number = CODES.get(key, ("", 0))
+            of = {"key": key, "code": code, "windowsVirtualKeyCode": number}
+            self.call("Input.dispatchKeyEvent", type="keyDown", text=written, **of)
+            self.call("Input.dispatchKeyEvent", type="keyUp", **of)
 
     def mouse(self, kind: str, x: float, y: float, button: str = "left") -> None:
         self.call("Input.dispatchMouseEvent", type=f"mouse{kind}", x=x, y=y, button=button,

@@ -19,7 +19,9 @@ SETTINGS = {
 }
 BUTTONS = {"left": 0, "right": 2}  # by number
 KEYS = {"ArrowLeft": "\ue012", "ArrowUp": "\ue013", "ArrowRight": "\ue014", "ArrowDown": "\ue015",
-        "Control": "\ue009", "Shift": "\ue008"}
+        "Control": "\ue009", "Shift": "\ue008", "Enter": "\ue007", "Home": "\ue011",
+        "End": "\ue010", "F5": "\ue035",
+        "PageDown": "\ue00f"}
 
 
 class Browser(browser.Browser):

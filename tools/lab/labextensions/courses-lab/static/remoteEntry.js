@@ -9,23 +9,11 @@
     return (await shared[name][version].get())();
   }
 
-  const PLAY = "M4 2 L14 8 L4 14 Z";
-  const FLAG = "M3 1 V15 M3 2 H13 L10 5 L13 8 H3";
-  const BACK = "M8 3 A5 5 0 1 1 3 8 M8 0 L4 3 L8 6";
-  const PAGE = "M3 1 H13 V15 H3 Z M5 5 H11 M5 8 H11 M5 11 H9";
-  const TICK = "M2 9 L6 13 L14 3";
-  const WORLD = "M1 14 L6 2 H10 L15 14 M8 3 V6 M8 8 V11";
-
   async function plugins() {
-    const [{ ILauncher }, { ICommandPalette, InputDialog, Notification, ToolbarButton }, { LabIcon },
+    const [{ ILauncher }, { ICommandPalette, InputDialog, Notification, ToolbarButton }, icons,
       { ServerConnection }, { URLExt }] = await Promise.all([
       its("@jupyterlab/launcher"), its("@jupyterlab/apputils"), its("@jupyterlab/ui-components"),
       its("@jupyterlab/services"), its("@jupyterlab/coreutils")]);
-    const icon = (name, path) => new LabIcon({
-      name: `courses-lab:${name}`,
-      svgstr: `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 16 16" width="16"><path d="${path}"`
-        + ' fill="none" stroke="#616161" stroke-width="1.6" stroke-linejoin="round"/></svg>',
-    });
 
     async function ask(place, body) {
       const settings = ServerConnection.makeSettings();
@@ -48,14 +36,15 @@
       }));
       const tell = (error) => Notification.error(error.message, { autoClose: false });
 
-      const terminals = () => [...shell.widgets("main")].filter((one) => one.node.querySelector(".jp-Terminal"));
-
       /** Show a terminal, a new one among the others. */
       async function show(name) {
-        const others = terminals();
+        const others = [...shell.widgets("main")].filter((one) => one.node.querySelector(".jp-Terminal"));
         const shown = await commands.execute("terminal:open", { name });
-        if (others.length && !others.includes(shown)) {
-          shell.add(shown, "main", { ref: others[0].id, mode: "tab-after" });
+        const named = () => { shown.title.label = name; }; // and not after what runs in it
+        if (!others.includes(shown)) {
+          named();
+          shown.title.changed.connect(named);
+          if (others.length) shell.add(shown, "main", { ref: others[0].id, mode: "tab-after" });
         }
         shell.activateById(shown.id);
       }
@@ -72,28 +61,22 @@
       }
 
       const document = () => shell.currentWidget?.context ?? null;
-      const save = async (context) => {
-        if (context.model.dirty) await context.save();
-      };
-      const opened = (path, factory) => commands.execute("docmanager:open", { path, factory });
+      const first = (inside) => [...shell.widgets("main")].find((one) => one.node.querySelector(inside));
+
+      /** Open a file, as a tab beside one that has `inside`, such as another editor. */
+      const opened = (path, factory, inside) => commands.execute("docmanager:open", {
+        path, factory, options: { ref: inside && first(inside)?.id, mode: "tab-after" },
+      });
 
       async function choose(title, items) {
         const chosen = await InputDialog.getItem({ title, items: items.map((one) => one.label) });
         return chosen.button.accept ? items.find((one) => one.label === chosen.value) : null;
       }
 
-      async function openLesson(lesson) {
-        await opened(lesson.page, "Markdown Preview");
-        await opened(lesson.script, "Editor");
-      }
-
       async function ofFile(name, context) {
-        try {
-          await save(context);
-        } catch (error) {
-          tell(error);
-          return;
-        }
+        const saved = !context.model.dirty
+          || await context.save().then(() => true, (error) => { tell(error); });
+        if (!saved) return;
         const { path } = context;
         if (name === "world") {
           const lesson = menu.lessons.find((one) => one.script === path);
@@ -126,22 +109,29 @@
         if (category) launcher?.add({ command: id, category, rank });
       }
       menu.courses.forEach(({ name, label }, rank) => add(`courses:start-${name}`, label,
-        icon(`start-${name}`, WORLD), () => act("course", name), texts.courses, rank));
-      add("courses:open", texts.open, icon("open", PAGE), async () => {
+        icons.launchIcon, () => act("course", name), texts.courses, rank));
+      add("courses:open", texts.open, icons.fileIcon, async () => {
         const lesson = await choose(texts.open, menu.lessons);
-        if (lesson) await openLesson(lesson);
+        if (!lesson) return;
+        await opened(lesson.page, "Markdown Preview", ".jp-MarkdownViewer");
+        await opened(lesson.script, "Editor", ".jp-FileEditor");
       }, texts.lessons, 1);
-      add("courses:check", texts.check, icon("check", TICK), async () => {
+      add("courses:check", texts.check, icons.checkIcon, async () => {
         const exercise = await choose(texts.check, menu.exercises);
         if (!exercise) return;
-        await opened(exercise.script, "Editor");
+        await opened(exercise.script, "Editor", ".jp-FileEditor");
         await act("check", exercise.name);
       }, texts.lessons, 2);
-      add("courses:marks", texts.marks, icon("marks", FLAG), marks, texts.lessons, 3);
+      add("courses:marks", texts.marks, icons.numberingIcon, marks, texts.lessons, 3);
+      add("courses:back", texts.back, icons.historyIcon, async () => {
+        const asked = await InputDialog.getText({ title: texts.back, label: texts.back_to, text: "lost" });
+        if (asked.button.accept && asked.value.trim()) await act("back", asked.value.trim());
+      }, texts.lessons, 4);
 
-      const buttons = { run: PLAY, world: WORLD, lap: FLAG, reset: BACK };
-      const icons = Object.fromEntries(Object.entries(buttons).map(([name, path]) => [name, icon(name, path)]));
-      Object.keys(buttons).forEach((name) => add(`courses:${name}`, texts[name], icons[name], async () => {
+      const buttons = {
+        run: icons.runIcon, world: icons.launchIcon, lap: icons.fastForwardIcon, reset: icons.undoIcon,
+      };
+      Object.keys(buttons).forEach((name) => add(`courses:${name}`, texts[name], buttons[name], async () => {
         if (document()) await ofFile(name, document());
       }));
       commands.addKeyBinding({ command: "courses:run", keys: ["F5"], selector: ".jp-FileEditor" });
@@ -149,7 +139,7 @@
         createNew(widget, context) {
           Object.keys(buttons).reverse().forEach((name) => widget.toolbar.insertItem(0, `courses-${name}`,
             new ToolbarButton({
-              icon: icons[name], label: texts[name], tooltip: name === "run" ? `${texts.run} (F5)` : texts[name],
+              icon: buttons[name], label: texts[name], tooltip: name === "run" ? `${texts.run} (F5)` : texts[name],
               onClick: () => ofFile(name, context),
             })));
         },
@@ -157,11 +147,9 @@
 
       // The tiles, behind the lesson's page; where no page is open, JupyterLab shows them by itself.
       app.restored.then(() => {
-        const shown = [...shell.widgets("main")];
-        const page = shown.find((one) => one.node.querySelector(".jp-MarkdownViewer"));
-        const has = shown.some((one) => one.node.querySelector(".jp-Launcher"));
+        const page = first(".jp-MarkdownViewer");
         if (window.matchMedia("(max-width: 760px)").matches) shell.mode = "single-document"; // a phone
-        if (launcher && page && !has) commands.execute("launcher:create", { ref: page.id, activate: false });
+        if (page && !first(".jp-Launcher")) commands.execute("launcher:create", { ref: page.id, activate: false });
       });
     }
 
