@@ -1,5 +1,5 @@
 # Every command is a script in scripts/; run a script itself to get its own exit code.
-verbs = setup course race replay viewer lab drive lane track avoid navigate autorace mark site shell deps build report clean clean-root help \
+verbs = setup course race replay viewer lab drive lane track avoid navigate autorace mark grade site shell deps build report clean clean-root help \
   test lint race-trials track-trials lane-trials navigation-trials localisation-trials bench-lanes bench fuzz chaos soak mutants check-releases deb image wheels
 .PHONY: $(verbs)
 .DEFAULT_GOAL = help
@@ -85,6 +85,11 @@ mark: ## drive each submission in a sandbox, and mark it SUBMISSIONS=DIR [COURSE
 	  $(if $(SEEDS),--seeds "$$SEEDS") $(if $(RULES),--rules "$$RULES") \
 	  $(if $(filter-out 0 no false,$(FILM)),--film) $(if $(filter-out 0 no false,$(RESUME)),--resume) \
 	  $(if $(OUT),--out "$$OUT") $(WHERE)
+
+grade: ## drive one program as mark does: passed or not, and why, also for CI FILE=follower.py [COURSE=course SEEDS=3 RULES=YAML FILM=1 OUT=DIR]
+	@scripts/grade.sh $(if $(FILE),--file "$$FILE") $(if $(COURSE),--course "$$COURSE") \
+	  $(if $(SEEDS),--seeds "$$SEEDS") $(if $(RULES),--rules "$$RULES") \
+	  $(if $(filter-out 0 no false,$(FILM)),--film) $(if $(OUT),--out "$$OUT")
 
 site: ## all pages with a search, in English and Chinese, for the browser: out/site/index.html
 	@scripts/site.sh

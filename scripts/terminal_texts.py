@@ -107,12 +107,14 @@ CHECK = "src/workspace_needs/src/workspace_needs/check/findings.py"
 OF_TABLES = (
     "  follower", "laps", "lap s", "RMS cm", "max cm", "sent", "dropped", "real time", "outcome",
     "goal", "reached", "straight s", "shortest s", "off cm", "off °", " points", "student",
+    "points", "of", "sandbox", "note", "path", "film", "Marks",
     "halls", "contact", "mean time, s", "slowest, s", "nearest, m",
     "file", "robot", "world", "scripts",  # and of check
     "mission", "passed", "after s", "contacts", "why not", "yes", "mapping", "goals", "standing")
 # Of progress lines, whose frame has few words.
 OF_PROGRESS = ("way-point {0}/{1}", "goal {0}/{1}", "{0}, {1} m off",
-               "{0} points", "{0} points, {1}", "{0}; lost {1} points: {2}", "exit code {0}",
+               "lap finished", "{0} laps finished", "track {0}, seed {1}", "{0} of {1} points",
+               "replay in 3D", "it called {0}", "it published {0}", "exit code {0}",
                "closed", "stalled", "time is up", "ended early",
                "subscribed to {0}", "advertised {0}", "made {0}", "not allowed", "not run",
                "fault", "preview: {0}", "next:", "{0} cm and {1}°", "{0}, scene {1}, seed {2}",
@@ -247,7 +249,7 @@ def is_text(text: str) -> bool:
 
 NO_TEXT = re.compile(
     r"^<[!?/]|^(\{\d+\} *)?<\w+( name=\{0\})?( [\w:]+=\"|>?$|>[^,]*</)"
-    r"|[\\^]|\|(?! )|(?<! )\||\w\[\w|^import |^# |^/|^~\S*$")
+    r"|[\\^]|\|(?! )|(?<! )\||\w\[\w|^import |^# |^/|^~\S*$|^\w+\{[\w-]+:\w")
 
 
 @cache

@@ -14,7 +14,7 @@ import psutil
 import pytest
 from marking.bubblewrap import Kind, available, namespace
 from marking.rules import load_rules
-from marking.submission_process import SubmissionProcess
+from marking.submission_process import SubmissionProcess, exceptions
 
 from run_session.failure import RunError
 
@@ -59,9 +59,36 @@ def boxed(kind, tmp_path):
 
 @pytest.mark.parametrize(("program", "says"), [
     ("def f():\n    import json\n    json.loads('')\n\nf()\n", "main.py, line 3: json.decoder."),
-    ("print('File \"/x.py\", line 7')\nraise ValueError", "main.py, line 2: ValueError")])
+    ("print('File \"/x.py\", line 7')\nraise ValueError", "main.py, line 2: ValueError"),
+    ("import traceback\ntry:\n    1 / 0\nexcept ArithmeticError:\n    traceback.print_exc()\n"
+     "raise KeyError('x')\n", "main.py, line 6: KeyError: 'x'")])  # what ended it, not an earlier
 def test_where_a_program_broke_off(boxed, program, says):
-    assert fault_of(boxed(program)).startswith(f"the program ended (exit code 1): {says}")
+    reason = fault_of(boxed(program))
+    assert reason.startswith(f"exception in {says}")
+    assert reason.endswith("; the program ended (exit code 1)")
+
+
+CALLBACK = """\x1b[31m[ERROR] [1796010545.129, 0.034]: bad callback: <bound method image>
+Traceback (most recent call last):
+  File "/usr/lib/python3/dist-packages/rospy/topics.py", line 750, in _invoke_callback
+    cb(msg)
+  File "/home/submission/my follower.py", line 61, in image
+    gain = 1 / 0
+           ~~^~~
+{}: division by zero\x1b[0m
+"""
+
+
+def test_exceptions_in_callbacks_are_found_in_what_was_printed():
+    printed = f"hello\n{CALLBACK.format('ZeroDivisionError')}{CALLBACK.format('MyFault')}"
+    where = "exception in my follower.py, line 61: "
+    assert exceptions(printed, "/home/submission") == [
+        f"{where}ZeroDivisionError: division by zero", f"{where}MyFault: division by zero"]
+    assert exceptions(printed, "/home/other") == []
+
+
+def test_a_program_that_only_reaches_its_end_is_told_what_is_missing(boxed):
+    assert fault_of(boxed("x = 1")) == "the program ended (exit code 0); is rospy.spin() missing?"
 
 
 @pytest.mark.parametrize(("user", "advice"), [
@@ -82,7 +109,7 @@ def fault_of(box: SubmissionProcess) -> str:
     while not (fault := box.fault()):
         assert time.monotonic() < until, "it still runs"
         time.sleep(0.05)
-    return fault
+    return "; ".join(filter(None, [box.exception(), fault]))
 
 
 @pytest.mark.parametrize("student", [
@@ -146,7 +173,7 @@ def test_the_shipped_rules_are_hidden(boxed):
                f"rules = {str(made_up.RULES.parent)!r}\n"
                "try:\n    open(rules + '/x', 'w')\n"
                "except OSError as error:\n    raise RuntimeError(os.listdir(rules), error.errno)\n")
-    assert fault_of(boxed(program)).endswith(f"RuntimeError: ([], {errno.EROFS})")
+    assert f"RuntimeError: ([], {errno.EROFS});" in fault_of(boxed(program))
 
 
 def test_its_output_is_kept_but_bounded(boxed, tmp_path):

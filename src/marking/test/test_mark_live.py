@@ -44,7 +44,7 @@ def test_a_class_is_marked_and_goes_on_where_it_was_interrupted(tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
     assert made_up.wrong_rows(list(rows_of(tmp_path).values()), expected) == []
     assert (tmp_path / "out/students/good/track0-seed1.png").stat().st_size > 10_000
-    assert " points, closed" in (tmp_path / "out/students/good/track0-seed1.html").read_text()
+    assert " of 100: lap finished" in (tmp_path / "out/students/good/track0-seed1.html").read_text()
     assert [each for each in psutil.Process().children(recursive=True)
             if each.status() != psutil.STATUS_ZOMBIE] == []
     marks = (tmp_path / "out" / "marks.csv").read_bytes()

@@ -8,7 +8,7 @@ from dataclasses import replace
 import made_up
 import pytest
 from marking.bubblewrap import Kind
-from marking.case_files import FILM, OUTPUT, PATH_PICTURE, read_case
+from marking.case_files import FILM, OUTPUT, PATH_PICTURE, THUMBNAIL, read_case
 from marking.case_runner import BY_TIME
 from marking.trial import TIMED, TRIES, MarkingTrial
 
@@ -21,8 +21,9 @@ from run_session.failure import RunError
 from run_session.files import find_package
 from run_session.session import StatusLine
 
-CLOSED = {"outcome": "closed", "violations": [], "fault": "", "why": "", "laps_wanted": 1,
-          "laps_closed": 1, "driven_share": 1.0, "rms_lateral_m": 0.03, "mean_speed_m_s": 0.2}
+CLOSED = {"outcome": "closed", "violations": [], "fault": "", "why": "", "exception": "",
+          "laps_wanted": 1, "laps_closed": 1, "driven_share": 1.0, "rms_lateral_m": 0.03,
+          "mean_speed_m_s": 0.2}
 RECORDED = "".join(json.dumps(line) + "\n" for line in (
     {"scene": scene_to_text(Scene(SceneDescription()))}, {"names": ["car::base"]},
     *({"time": time, "poses": [[time, 0, 0, 0, 0, 0, 1]]} for time in (0.1, 0.2))))
@@ -44,8 +45,9 @@ class FakeSession:
 
 
 @pytest.fixture()
-def marking(tmp_path):
+def marking(tmp_path, monkeypatch):
     """A trial of one submission, and its options."""
+    monkeypatch.setenv("LANGUAGE", "en")
     made_up.write(tmp_path / "in", {"good"})
     rules = made_up.write_rules(tmp_path / "marking.yaml")
     trial = MarkingTrial()
@@ -65,7 +67,7 @@ def test_what_answers_each_image_drives_once(marking, capsys):
     trial, options = marking
     assert trial.pictures([found], options.out) == []
     begun, written = capsys.readouterr().out.splitlines()
-    assert begun == "good/0-1: course, track 0, seed 1: driving, at most 1650 s"
+    assert begun == "good: course, track 0, seed 1: driving, at most 1650 s"
     assert written.startswith(f"the marks: {options.out / 'marks.csv'}, ")
     assert (found.points, found.note) == (100, "")
     assert [case.timed for case in session.cases] == [False]
@@ -77,17 +79,17 @@ def test_what_a_drive_leaves_for_the_student_is_kept_once(marking):
     record = trial.drive(FakeSession(CLOSED), case)
     folder = options.out / "cases" / "good" / "track0-seed1"
     (folder / RECORDING).write_text(RECORDED)
-    for name in (PATH_PICTURE, FILM):
+    for name in (PATH_PICTURE, THUMBNAIL, FILM):
         (folder / name).write_text(name)
     found = trial.judge(record)
     trial.pictures([found], options.out)
     kept = options.out / "students" / "good"
     assert {each.name for each in kept.iterdir()} == {
-        "index.html", *(f"track0-seed1.{ending}" for ending in ("html", "mp4", "png"))}
+        "index.html", *(f"track0-seed1.{ending}" for ending in ("html", "mp4", "png", "webp"))}
     for each in kept.iterdir():  # a link on a page is a file in its folder
         linked = re.findall(r'(?:href|src)="([^"#:]+)"', each.read_text())
         assert all((kept / name).exists() for name in linked)
-    assert not {each.name for each in folder.iterdir()} & {RUN_PAGE, PATH_PICTURE, FILM}
+    assert not {each.name for each in folder.iterdir()} & {RUN_PAGE, PATH_PICTURE, THUMBNAIL, FILM}
 
 
 def test_a_drive_shows_nothing_of_an_earlier_one(marking):
@@ -96,9 +98,9 @@ def test_a_drive_shows_nothing_of_an_earlier_one(marking):
     for each in (folder, kept):
         each.mkdir(parents=True)
     (folder / RECORDING).write_text(RECORDED)  # of a run that was killed
-    for name in (PATH_PICTURE, FILM, OUTPUT):
+    for name in (PATH_PICTURE, THUMBNAIL, FILM, OUTPUT):
         (folder / name).write_text("earlier")
-    for ending in ("html", "png", "mp4"):
+    for ending in ("html", "png", "webp", "mp4"):
         (kept / f"track0-seed1.{ending}").write_text("earlier")
     trial.pictures([mark(marking, FakeSession(*[RunError("no roscore")] * TRIES))], options.out)
     assert {each.name for each in kept.iterdir()} == {"index.html"}
@@ -106,31 +108,36 @@ def test_a_drive_shows_nothing_of_an_earlier_one(marking):
 
 
 @pytest.mark.parametrize("program, says", [
-    ("", "is empty"), (" \n", "is empty"), ("# TODO\n", "has only comments")])
+    ("", "good.py is empty"), (" \n", "good.py is empty"),
+    ("# TODO\n", "good.py has only comments"),
+    ("x = 1\nprint 'x'\n", "exception in good.py, line 2: SyntaxError: ")])
 def test_a_program_without_code_is_not_driven(marking, tmp_path, capsys, program, says):
     (tmp_path / "in" / "good.py").write_text(program)
     trial, options = marking
     found = mark(marking, FakeSession())
     assert (found.points, found.outcome, found.folder) == (0, "fault", "")
-    assert trial.line(found) == f"good/0-1: 0 points, fault; lost 100 points: good.py {says}"
+    assert trial.line(found).startswith(f"good: 0 of 100: the program failed. -100: {says}")
     trial.pictures([found], options.out)
     assert "driving" not in capsys.readouterr().out
-    assert f"100 points: good.py {says}" in json.dumps(trial.values([found]))
+    assert f"-100: {says}" in json.dumps(trial.values([found]))
     assert says in (options.out / "marks.html").read_text()
     assert says in (options.out / "students" / "good" / "index.html").read_text()
 
 
-@pytest.mark.parametrize("program", ["# mine\rx = 1\r", "\ufeffx = 1", "# mine\r\n\tx = 1"])
+@pytest.mark.parametrize("program", ["# mine\rx = 1\r", "\ufeffx = 1", "# mine\r\n\t\r\nx = 1"])
 def test_a_program_with_a_line_of_code_is_driven(marking, tmp_path, program):
     (tmp_path / "in" / "good.py").write_bytes(program.encode())
     assert mark(marking, FakeSession(CLOSED)).outcome == "closed"
 
 
-def test_the_line_names_what_cost_most(marking):
-    trial, _ = marking
-    lost = ("1.7 points: 3.8 cm RMS beside the line", "5.0 points: 0.150 m/s on average")
+def test_the_line_names_all_losses(marking):
+    trial, options = marking
+    lost = ("-1.7: 3.8 cm off the line", "-5: 0.150 m/s on average")
     found = replace(mark(marking, FakeSession(CLOSED)), points=93.3, lost=lost)
-    assert trial.line(found).endswith("closed; lost 5.0 points: 0.150 m/s on average")
+    had = "93.3 of 100: lap finished. -1.7: 3.8 cm off the line. -5: 0.150 m/s on average"
+    assert trial.line(found) == f"good: {had}"
+    options.rules = replace(options.rules, seeds=2)
+    assert trial.line(found) == f"good, track 0, seed 1: {had}"
 
 
 def test_what_does_not_drives_again_in_real_time(marking, capsys):

@@ -35,7 +35,7 @@ from evaluation.picture import (
     Plan,
     lap_colour,
     sheet,
-    write_png,
+    write_image,
 )
 from evaluation.report import cell, mean, table
 from evaluation.run_page import RECORDING, begin_recording, write_run_page
@@ -272,5 +272,5 @@ def write_sheet(drives: Sequence, path: Path) -> None:
         plan.line(drive.path, lap_colour(number), 2)
         if not drive.passed:
             plan.cross(drive.path[-1], CAR)
-    write_png(path, sheet(("AutoRace 2020", f"{passed} of {len(drives)} drives passed"), [plan],
+    write_image(path, sheet(("AutoRace 2020", f"{passed} of {len(drives)} drives passed"), [plan],
                           [("barriers", CAR), ("bays", WHITE)]))

@@ -84,7 +84,8 @@ def one_of(kind: str, variable: str, names: Iterable[str], name: str) -> str:
 
 
 # By program: which of the options that all trials have make takes, and how
-BY_MAKE = {"mark": {"out": "OUT=", "resume": "RESUME=1"}, "replay": {"out": "OUT="}}
+BY_MAKE = {"mark": {"out": "OUT=", "resume": "RESUME=1"}, "grade": {"out": "OUT="},
+           "replay": {"out": "OUT="}}
 
 
 def option_of(program: str, word: str) -> str:

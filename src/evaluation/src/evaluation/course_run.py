@@ -30,7 +30,7 @@ from evaluation.picture import (
     lap_colour,
     legend_bar,
     path_picture,
-    write_png,
+    write_image,
 )
 from evaluation.report import cell, table, write_json
 from evaluation.run_log import RUN_LOG
@@ -298,7 +298,7 @@ class CourseRun(CarDrive):
     def write(self, report: dict) -> list[str]:
         picture = path_picture(self.track_file, self.drive, self.course.line_colour,
                                *_titles(self.driver, report))
-        write_png(self.out / "path.png", picture)
+        write_image(self.out / "path.png", picture)
         found = [followers_table(write_report(self.out, self.driver, report), self.driver)]
         if self.options.timed and report["outcome"] == Verdict.LATE.value:
             found.append(report["why"])

@@ -222,8 +222,8 @@ class LapScorer:
             self._mark = (sample.time, self._position)
         waited = sample.time - self._mark[0]
         if abs(self.lateral) > self.off_course:
-            side = "left" if self.lateral > 0 else "right"
-            beside = f"{abs(self.lateral):.2f} m to the {side} of the line"
+            beside = (f"{self.lateral:.2f} m to the left of the line" if self.lateral > 0 else
+                      f"{-self.lateral:.2f} m to the right of the line")
             self._end(Verdict.LEFT, f"the car left the course {where}: {beside}")
         elif self._farthest - self._position > REVERSED:
             self._end(Verdict.REVERSED, f"the car drove the wrong way {where}")

@@ -13,7 +13,7 @@ from evaluation.live import LiveDrive, Outcome
 from evaluation.navigate_parts import Part, map_house, read_map_frame, visit_goals
 from evaluation.navigate_pictures import Film, map_picture
 from evaluation.navigate_score import Result, lines, mismatch, reached, summarize
-from evaluation.picture import write_png
+from evaluation.picture import write_image
 from evaluation.report import cell, write_json
 from evaluation.run_page import RUN_PAGE
 from map_server.errors import MapFileError
@@ -105,7 +105,7 @@ class NavigationRun(LiveDrive):
 
     def write(self, report: dict) -> list[str]:
         picture = map_picture(self._ground, self.result, *_titles(self.options, self.result))
-        write_png(self.out / "map.png", picture)
+        write_image(self.out / "map.png", picture)
         write_json(report, self.out / "report.json")
         return lines(self.result)
 

@@ -119,13 +119,15 @@ class Plan:
         cv2.polylines(self.image, [corners], True, (255, 255, 255), 2, cv2.LINE_AA, SHIFT)
 
 
-def course_plan(track_file: TrackFile, width_px: int, line_colour: str) -> Plan:
-    """A view of the floor with a 0.5 m grid, the two lines and the start."""
+def course_plan(track_file: TrackFile, width_px: int, line_colour: str,
+                grid: float | None = 0.5) -> Plan:
+    """A view of the floor with a grid (m), the two lines and the start."""
     yellow = build_track(track_file)
     white = yellow.offset(-track_file.lane_width)
     points = np.array(yellow.points() + white.points())
     plan = Plan(points.min(axis=0) - 0.15, points.max(axis=0) + 0.15, width_px)
-    plan.grid(0.5)
+    if grid:
+        plan.grid(grid)
     for line, colour in ((white, WHITE), (yellow, line_colour)):
         plan.line(line.points(), colour, max(2, round(track_file.line_width * plan.px_per_m)),
                   closed=True)
@@ -182,6 +184,7 @@ def _fixed(points_px: np.ndarray) -> np.ndarray:
 
 PANEL_DPI, PANEL = 110, (6.5, 3.4)  # of charts: px an inch; inches
 MAP_PX, SIDE_PX, ARROW_PX = 1300, 50, 70  # of a sheet: its maps' width, beside them; the car
+THUMBNAIL_PX = 360
 
 
 def sheet(texts: Sequence[str], plans: Sequence[Plan], entries: Iterable[tuple[str, str]]
@@ -197,9 +200,9 @@ def sheet(texts: Sequence[str], plans: Sequence[Plan], entries: Iterable[tuple[s
         part, 10, 10, SIDE_PX, SIDE_PX, cv2.BORDER_CONSTANT, value=bgr(PAPER)) for part in parts)])
 
 
-def write_png(path: Path, picture: np.ndarray) -> None:
-    """Write (rows, columns, 3), BGR, as PNG; OSError, and no file, if it cannot be written."""
-    write_whole(path, cv2.imencode(".png", picture)[1].tobytes())
+def write_image(path: Path, picture: np.ndarray) -> None:
+    """Write (rows, columns, 3), BGR, as the name ends; OSError, and no file, if it cannot be."""
+    write_whole(path, cv2.imencode(path.suffix, picture)[1].tobytes())
 
 
 def path_picture(track_file: TrackFile, drive: LapScorer, line_colour: str, title: str,
@@ -213,7 +216,15 @@ def path_picture(track_file: TrackFile, drive: LapScorer, line_colour: str, titl
     return sheet((title, subtitle), [plan], entries)
 
 
-def _draw_laps(plan: Plan, drive: LapScorer) -> list[tuple[str, str]]:
+def path_thumbnail(track_file: TrackFile, drive: LapScorer, line_colour: str) -> np.ndarray:
+    """The same without words, (rows, THUMBNAIL_PX, 3), BGR, for showing at half this size."""
+    plan = course_plan(track_file, THUMBNAIL_PX, line_colour, grid=None)
+    _draw_laps(plan, drive, thick_px=5, arrow_px=40)
+    return plan.image
+
+
+def _draw_laps(plan: Plan, drive: LapScorer, thick_px: int = 3, arrow_px: int = ARROW_PX
+               ) -> list[tuple[str, str]]:
     """Draw all laps, of which earlier ones are wider, to remain visible; returns the legend's."""
     points = np.array([(sample.x, sample.y) for sample in drive.samples])
     numbers = np.minimum(drive.lap_numbers, drive.wanted_laps - 1)
@@ -221,12 +232,12 @@ def _draw_laps(plan: Plan, drive: LapScorer) -> list[tuple[str, str]]:
     for number in range(last + 1):
         chosen = np.flatnonzero(numbers == number)
         plan.line(points[max(chosen[0] - 1, 0):chosen[-1] + 1], lap_colour(number),
-                  round(3 * (1 + 0.6 * min(last - number, 4))))
+                  round(thick_px * (1 + 0.6 * min(last - number, 4))))
         if number < len(LAPS):
             found.append((f"lap {number + 1}{_lap_figures(drive, number)}", lap_colour(number)))
     if last >= len(LAPS):
         found.append((f"laps {len(LAPS) + 1} to {last + 1}: the same colours again", FAINT))
-    plan.arrow((end.x, end.y, end.yaw), ARROW_PX / plan.px_per_m, CAR)
+    plan.arrow((end.x, end.y, end.yaw), arrow_px / plan.px_per_m, CAR)
     return [*found, ("car at the end", CAR)]
 
 
@@ -248,7 +259,7 @@ def write_tiles(path: Path, tiles: Sequence[tuple[str, bool, np.ndarray]], colum
                                         cv2.BORDER_CONSTANT, value=bgr(PAPER)))
     columns = min(columns, len(shown))
     shown += [np.full_like(shown[0], bgr(PAPER))] * (-len(shown) % columns)
-    write_png(path, np.vstack([np.hstack(shown[first:first + columns])
+    write_image(path, np.vstack([np.hstack(shown[first:first + columns])
                                for first in range(0, len(shown), columns)]))
 
 
@@ -267,4 +278,4 @@ def chart(path: Path, rows: int, columns: int, **settings: object) -> Iterator[n
     sheet.tight_layout()
     canvas = FigureCanvasAgg(sheet)
     canvas.draw()
-    write_png(path, np.asarray(canvas.buffer_rgba())[..., 2::-1])
+    write_image(path, np.asarray(canvas.buffer_rgba())[..., 2::-1])

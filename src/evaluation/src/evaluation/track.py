@@ -36,7 +36,7 @@ from evaluation.picture import (
     MAP_PX,
     Plan,
     sheet,
-    write_png,
+    write_image,
     write_text,
 )
 from evaluation.report import write_json
@@ -169,7 +169,7 @@ def write_picture(path: Path, scene: Scene, drive: TrackScorer, lines: Sequence[
     what, curve = ("cylinder", "m to the cylinder") if drive.task.wanted is None else (
         "wanted distance", "m beside the wanted distance")
     hidden = [("hidden", SHADE)] if drive.task.hidden else []
-    write_png(path, sheet(lines[:3], [plan, _curve(drive)], [
+    write_image(path, sheet(lines[:3], [plan, _curve(drive)], [
         ("the cylinder", CAR), (f"within {BAND:g} m of the {what}", GOOD), ("not", BAD),
         (curve, FAINT), *hidden]))
 

@@ -106,8 +106,8 @@ def _lane(track: Path | None, _out: Path) -> _Venue:
 _VENUES = {"course": _course, "race": _race, "lane": _lane}
 
 
-CASE, REPORT, PATH_PICTURE, OUTPUT, FILM = (
-    "case.json", "report.json", "path.png", "output.txt", "film.mp4")
+CASE, REPORT, PATH_PICTURE, THUMBNAIL, OUTPUT, FILM = (
+    "case.json", "report.json", "path.png", "path.webp", "output.txt", "film.mp4")
 STATE_LOG = "state.jsonl"
 
 

@@ -26,7 +26,7 @@ from std_srvs.srv import Empty
 from evaluation.command_line import run_program
 from evaluation.film import FINISH_TIME, WRITE_TIME
 from evaluation.lap import LapScorer, Verdict, fingerprint
-from evaluation.picture import path_picture, write_png
+from evaluation.picture import path_picture, path_thumbnail, write_image
 from evaluation.report import write_json
 from marking import conduct, guard
 from marking.bubblewrap import Kind
@@ -35,11 +35,13 @@ from marking.case_files import (
     PATH_PICTURE,
     REPORT,
     STATE_LOG,
+    THUMBNAIL,
     CaseFile,
     read_case,
     sample_of,
 )
 from marking.course_startup import LOOK_PERIOD, CourseStartup
+from marking.points import did
 from marking.rules import Rules, load_rules
 from marking.submission_process import SubmissionProcess
 from run_session import simulator
@@ -61,10 +63,12 @@ def bytes_below(folder: Path) -> int:
 
 
 def write_report(folder: Path, case: CaseFile, drive: LapScorer, violations: Sequence[str],
-                 fault: str, contacts: Mapping[str, int], again: bool = False) -> dict:
+                 fault: str, contacts: Mapping[str, int], again: bool = False,
+                 exception: str = "") -> dict:
     """Write both into the folder; returns the report.
 
     `contacts`: for each touched model, the number of state log entries with the contact.
+    `exception`: the program's, in one line.
     `again`: the case has to be driven again, in real time.
     """
     total, verdict = drive.total, drive.verdict
@@ -77,6 +81,7 @@ def write_report(folder: Path, case: CaseFile, drive: LapScorer, violations: Seq
                    "time is up" if verdict is Verdict.DRIVING else verdict.value,
         "violations": list(violations),
         "fault": fault,
+        "exception": exception,
         "why": why,
         "laps_wanted": drive.wanted_laps,
         "laps_closed": len(drive.laps),
@@ -90,10 +95,10 @@ def write_report(folder: Path, case: CaseFile, drive: LapScorer, violations: Seq
         "drive_sha256": fingerprint(drive),
     }
     if drive.samples:
-        picture = path_picture(load_track_file(Path(case.track)), drive,
-                               case.driven().line_colour, report["outcome"],
-                               next(iter([*violations, fault or why])))
-        write_png(folder / PATH_PICTURE, picture)
+        shown = load_track_file(Path(case.track)), drive, case.driven().line_colour
+        write_image(folder / PATH_PICTURE, path_picture(
+            *shown, did(report), next(iter([*violations, exception or fault or why]))))
+        write_image(folder / THUMBNAIL, path_thumbnail(*shown))
     write_json(report, folder / REPORT)
     return report
 
@@ -142,7 +147,7 @@ class CaseRunner:
             launched.end(course.film, FILM_TIME)
         check_space(self._folder)
         return write_report(self._folder, self._case, self._scorer, self._conduct.violations,
-                            self._fault, self._contacts, self._again)
+                            self._fault, self._contacts, self._again, box.exception())
 
     def _drive(self, launched: Launched, course: CourseStartup, box: SubmissionProcess) -> None:
         began = time.monotonic()

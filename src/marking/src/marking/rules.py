@@ -10,6 +10,8 @@ from node_basics.records import read_yaml, to_record
 
 from run_session.failure import RunError
 
+PASS_POINTS = 60.0
+
 
 @dataclass(frozen=True)
 class Points:
@@ -60,6 +62,7 @@ class Rules:
     light: tuple[float, ...]
     camera: tuple[int, ...]
     points: Points
+    pass_points: float
     limits: Limits
     may_publish: tuple[str, ...]
     may_call: tuple[str, ...]
@@ -67,7 +70,10 @@ class Rules:
 
 def load_rules(path: Path) -> Rules:
     """Read a marking.yaml; RunError names file and key."""
-    rules = to_record(Rules, read_yaml(path, RunError), path, RunError)
+    values = read_yaml(path, RunError)
+    if isinstance(values, dict):  # files from before there was a pass line
+        values.setdefault("pass_points", PASS_POINTS)
+    rules = to_record(Rules, values, path, RunError)
     small = [key for key, value in dataclasses.asdict(rules.limits).items() if value <= 0]
     for wrong, what in (
             (len(rules.light) != 2 or not 0 < rules.light[0] <= rules.light[-1],
@@ -78,6 +84,8 @@ def load_rules(path: Path) -> Rules:
             (rules.laps < 1, "laps: must be 1 or more"),
             (rules.seeds < 1, "seeds: must be 1 or more"),
             (not rules.points.most, "points: finish, line and speed are all 0"),
+            (rules.pass_points > rules.points.most,
+             f"pass_points: must be {rules.points.most:g} or less"),
             (small, f"limits.{''.join(small[:1])}: must be more than 0")):
         if wrong:
             raise RunError(f"{path}: {what}")

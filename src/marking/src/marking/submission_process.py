@@ -22,7 +22,7 @@ from marking.submissions import one_line
 KEPT_OUTPUT = 64 * 1024  # bytes of the student's output that are kept
 GUARD_PERIOD, END_TIME = 0.2, 2.0  # s, wall
 LONGEST_REASON = 200  # characters
-EXCEPTION = re.compile(r"[\w.]+(Error|Exception|Interrupt)\b")
+COLOUR = re.compile(r"\x1b\[[\d;]*m")  # of rospy's log
 
 
 class SubmissionProcess:
@@ -55,8 +55,16 @@ class SubmissionProcess:
             return ""
         for thread in self._threads:
             thread.join(END_TIME)
-        return self._excess or (
-            f"the program ended ({_describe(self._process.returncode)}){self._last_words()}")
+        ended = f"the program ended ({_describe(self._process.returncode)})"
+        hint = "" if self._process.returncode else "; is rospy.spin() missing?"
+        return self._excess or ended + hint
+
+    def exception(self) -> str:
+        """The exception that ended it, else the first that it printed, and where in its own files;
+        "" if none or if it was killed: what it had printed by then may differ from run to run."""
+        found = [] if self._excess else exceptions(
+            self._output.read_text(encoding="utf-8", errors="replace"), self._where)
+        return found[-1 if self._process.poll() == 1 else 0][:LONGEST_REASON] if found else ""
 
     def end(self) -> None:
         """Kill the program and all its descendants."""
@@ -103,18 +111,19 @@ class SubmissionProcess:
                 file.write(block[:max(0, KEPT_OUTPUT - self._printed)])
                 self._printed += len(block)
 
-    def _last_words(self) -> str:
-        """Its exception, if it ended by one, and the last line of its own files that led there;
-        other output may differ from run to run."""
-        text = self._output.read_text(encoding="utf-8", errors="replace")
-        frame = re.compile(rf'File "{re.escape(self._where)}/(.+)", line (\d+)')
-        words = place = ""
-        for said in map(one_line, text.splitlines()):
-            if found := frame.match(said):
-                place = f"{found[1]}, line {found[2]}: "
-            elif EXCEPTION.match(said):
-                words, place = f": {place}{said}"[:LONGEST_REASON], ""
-        return words
+
+def exceptions(printed: str, folder: str) -> list[str]:
+    """The exceptions in what a program printed that went through files of its folder, a line each.
+    """
+    frame = re.compile(rf' *File "{re.escape(folder)}/(.+)", line (\d+)')
+    found, place = [], None
+    for line in COLOUR.sub("", printed).splitlines():
+        if at := frame.match(line):
+            place = at
+        elif place and line.strip() and not line.startswith(" "):
+            found.append(f"exception in {place[1]}, line {place[2]}: {one_line(line)}")
+            place = None
+    return found
 
 
 def _resident_bytes(pid: int) -> int:

@@ -78,6 +78,17 @@ def find_submissions(folder: Path) -> list[Submission]:
     return list(found.values())
 
 
+def submission_at(path: Path) -> Submission:
+    """The submission of one file or folder; RunError if there is none."""
+    try:
+        whole = path.resolve(strict=True)
+    except (OSError, RuntimeError) as error:
+        raise RunError(f"--file (FILE=) {path}: "
+                       f"{getattr(error, 'strerror', None) or error}") from error
+    student, fault = _student(whole)
+    return Submission(student, whole, fault)
+
+
 def digest(source: Path) -> str:
     """SHA-256 over the names and contents of a submission's files; of links it takes the target,
     of files too large to unpack the size and modification time."""
@@ -105,8 +116,21 @@ def prepare(submission: Submission, folder: Path, patterns: Sequence[str]) -> Pa
         raise UnpackError(submission.fault)
     unpack(submission.source, folder)
     program = choose_program(folder, patterns)
-    _refuse_without_code(folder / program, file_name(str(program)))
+    name = file_name(str(program))
+    _refuse_without_code(folder / program, name)
+    if wrong := _in_process(folder / program).stdout.decode(errors="replace"):
+        number, _, says = one_line(wrong).partition(" ")
+        raise UnpackError(f"exception in {name}, line {number}: {says}")
     return program
+
+
+def _in_process(*arguments: Path) -> subprocess.CompletedProcess:
+    """`main` with these in a process of its own: what it is given can demand any amount of memory
+    or time. It prints English: reports are kept in it."""
+    command = ["prlimit", f"--as={MOST_MEMORY}", f"--cpu={MOST_TIME}", "--core=0",
+               sys.executable, "-PXutf8", "-m", "marking.submissions", *map(str, arguments)]
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False,
+                          env=os.environ | {"LANGUAGE": "en"})
 
 
 def _refuse_without_code(program: Path, name: str) -> None:
@@ -140,7 +164,7 @@ def choose_program(folder: Path, patterns: Sequence[str]) -> Path:
                       f"them {patterns[0]}")
 
 
-def _student(entry: os.DirEntry) -> tuple[str, str]:
+def _student(entry: os.DirEntry | Path) -> tuple[str, str]:
     """The student's id, and a fault in the entry or ""."""
     name = file_name(entry.name)
     stem = archive_stem(name)
@@ -189,14 +213,9 @@ def archive_stem(name: str) -> str:
 def unpack(source: Path, folder: Path) -> None:
     """Unpack or copy into a new folder; on UnpackError, and on OSError if the disk is full, the
     folder is removed.
-
-    Runs in a process of its own: a header alone can demand any amount of memory or time.
     """
     shutil.rmtree(folder, ignore_errors=True)
-    command = ["prlimit", f"--as={MOST_MEMORY}", f"--cpu={MOST_TIME}", "--core=0",
-               sys.executable, "-P", "-m", "marking.submissions", str(source), str(folder)]
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False,
-                          env=os.environ | {"LANGUAGE": "en"})  # marks.csv is in English
+    done = _in_process(source, folder)
     if done.returncode:
         try:
             check_space(folder.parent)  # before anything is removed
@@ -293,8 +312,20 @@ def _tar_members(archive: tarfile.TarFile) -> Iterator[_Member]:
         yield _Member(entry.name, lambda entry=entry: archive.extractfile(entry))
 
 
-def main(source: str, folder: str) -> int:
-    """Unpack; returns the exit code, and prints one line if that fails."""
+def _say_what_does_not_compile(program: Path) -> None:
+    """Print a syntax error's line number and text."""
+    try:
+        compile(program.read_bytes(), "", "exec")
+    except SyntaxError as error:
+        print(f"{error.lineno or 1} {type(error).__name__}: {error.msg}")
+
+
+def main(source: str, folder: str = "") -> int:
+    """Unpack, or without a folder compile; returns the exit code, and prints one line if that
+    fails."""
+    if not folder:
+        _say_what_does_not_compile(Path(source))
+        return 0
     os.umask(0o022)  # the sandbox reads it as another user
     Path(folder).mkdir(parents=True)
     try:

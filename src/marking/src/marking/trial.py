@@ -21,7 +21,16 @@ from evaluation.report import table
 from evaluation.run_page import RECORDING, RUN_PAGE, write_run_page
 from evaluation.trial import Case, Trial
 from marking.bubblewrap import Kind, available, hidden, namespace, shown
-from marking.case_files import COURSES, FILM, OUTPUT, PATH_PICTURE, CaseFile, Scene, make_scene
+from marking.case_files import (
+    COURSES,
+    FILM,
+    OUTPUT,
+    PATH_PICTURE,
+    THUMBNAIL,
+    CaseFile,
+    Scene,
+    make_scene,
+)
 from marking.case_runner import BY_TIME
 from marking.course_startup import STARTUP_LIMIT
 from marking.marks import (
@@ -29,22 +38,26 @@ from marking.marks import (
     PAGE,
     SHOWN,
     STUDENTS,
-    Mark,
-    by_student,
-    mean,
-    points_of,
     student_file,
     write_marks,
     write_student_pages,
 )
+from marking.points import NOT_RUN, Mark, by_student, case_title, did, mean, points_of, sentence
 from marking.rules import load_rules
-from marking.submissions import UnpackError, digest, find_submissions, one_line, prepare
+from marking.submissions import (
+    Submission,
+    UnpackError,
+    digest,
+    find_submissions,
+    one_line,
+    prepare,
+)
 from run_session.failure import RunError
 from run_session.files import find_package
 from run_session.launch import LOOPBACK
 from run_session.session import Session
 
-NOT_RUN, SUBMISSION = "not run", "submission"
+SUBMISSION = "submission"
 TIMED = "driven in real time: it did not answer each image with a command"
 SANDBOXED = {kind.value: "without a sandbox" if kind is Kind.NONE else "in a sandbox"
              for kind in Kind}
@@ -79,8 +92,7 @@ class MarkingTrial(Trial):
     begins_anew = True
 
     def add_options(self, parser: Parser) -> None:
-        parser.add_argument("--submissions", type=Path, metavar="DIR",
-                            help="a file, folder, zip or tar of each student")
+        self.add_source(parser)
         parser.add_argument("--rules", type=Path, metavar="YAML",
                             help="what is driven and how it is marked (config/marking.yaml)")
         parser.add_argument("--course", metavar="NAME",
@@ -90,9 +102,28 @@ class MarkingTrial(Trial):
         parser.add_argument("--no-sandbox", action="store_true",
                             help="run submissions unprotected, where the machine allows no sandbox")
 
-    def check(self, options: argparse.Namespace) -> None:
+    def add_source(self, parser: Parser) -> None:
+        """Add the option that names the submissions."""
+        parser.add_argument("--submissions", type=Path, metavar="DIR",
+                            help="a file, folder, zip or tar of each student")
+
+    def find(self, options: argparse.Namespace) -> list[Submission]:
+        """The submissions; RunError if there are none."""
         if options.submissions is None:
             raise RunError("--submissions (SUBMISSIONS=) is missing: a folder of submissions")
+        return find_submissions(options.submissions)
+
+    def sandbox(self, options: argparse.Namespace) -> Kind:
+        """The sandbox, if any is allowed; RunError if not, or if it shows what must be hidden."""
+        if options.no_sandbox:
+            return Kind.NONE
+        _refuse_what_the_sandbox_shows(("--submissions (SUBMISSIONS=)", options.submissions),
+                                       (self.named("out"), options.out),
+                                       ("--rules (RULES=)", options.given_rules))
+        return available()
+
+    def check(self, options: argparse.Namespace) -> None:
+        found = self.find(options)
         path = (options.rules or find_package("marking") / "config" / "marking.yaml").resolve()
         rules = load_rules(path)
         course = options.course or rules.course
@@ -101,16 +132,12 @@ class MarkingTrial(Trial):
             raise RunError(f"{given} must be one of {', '.join(COURSES)}, is {course!r}")
         for track in rules.tracks:
             load_track(Path(track))
-        given, options.rules_path = options.rules, path
+        options.given_rules, options.rules_path = options.rules, path
         options.rules = dataclasses.replace(rules, course=course,
                                             seeds=options.seeds or rules.seeds)
         options.rules_sha256 = _digest(course, [path, *map(Path, rules.tracks)])
-        options.found = {each.student: each for each in find_submissions(options.submissions)}
-        options.kind = Kind.NONE if options.no_sandbox else available()
-        if options.kind is not Kind.NONE:
-            _refuse_what_the_sandbox_shows(("--submissions (SUBMISSIONS=)", options.submissions),
-                                           (self.named("out"), options.out),
-                                           ("--rules (RULES=)", given))
+        options.found = {each.student: each for each in found}
+        options.kind = self.sandbox(options)
 
     def cases(self, options: argparse.Namespace) -> list[MarkedCase]:
         rules = options.rules
@@ -145,7 +172,7 @@ class MarkingTrial(Trial):
     def _drive(self, session: Session, case: MarkedCase, scene: Scene, file: CaseFile) -> dict:
         """The report of the drive, or what prevented it."""
         folder = _folder(self.options.out, case)
-        for made in (OUTPUT, PATH_PICTURE, FILM, RECORDING):  # of an earlier drive
+        for made in (OUTPUT, PATH_PICTURE, THUMBNAIL, FILM, RECORDING):  # of an earlier drive
             (folder / made).unlink(missing_ok=True)
         file.write(folder)
         command = [*namespace(self.options.kind), sys.executable, "-P", "-m",
@@ -155,7 +182,7 @@ class MarkingTrial(Trial):
         limit = limits.start_s + limits.wall_s + 3 * STARTUP_LIMIT
         how = "driving in real time" if file.timed else "driving"
         for left in reversed(range(TRIES)):
-            session.progress.say(f"{case.name}: {file.course}, track {case.track}, seed "
+            session.progress.say(f"{case.student}: {file.course}, track {case.track}, seed "
                                  f"{case.seed}: {how}, at most {limit:g} s")
             try:
                 return session.drive(command, folder, case.name, limit, environment)
@@ -171,30 +198,30 @@ class MarkingTrial(Trial):
         shutil.rmtree(folder / SUBMISSION, ignore_errors=True)  # the original is kept
         points, lost = points_of(report, self.options.rules.points)
         lost = tuple(map(one_line, lost))
+        mark = Mark(case.name, case.student, _case_name(case), report["outcome"], points, lost,
+                    str(folder.relative_to(out)) if record.driven else "",
+                    report.get("note", ""), record.submission_sha256, did(report))
         if record.driven:
-            kept = {made: student_file(out, case.student, _case_name(case), made) for made in SHOWN}
+            kept = {made: student_file(out, case.student, mark.case, made) for made in SHOWN}
             kept[RUN_PAGE].parent.mkdir(parents=True, exist_ok=True)
-            write_run_page(folder / RECORDING, kept[RUN_PAGE], case.name,
-                           "\n".join([f"{points:g} points, {report['outcome']}", *lost]),
+            write_run_page(folder / RECORDING, kept[RUN_PAGE],
+                           f"{case.student}, {case_title(mark.case)}",
+                           sentence(mark, self.options.rules.points.most),
                            folder / FILM, [folder / PATH_PICTURE])
-            for made in (PATH_PICTURE, FILM):
+            for made in (PATH_PICTURE, THUMBNAIL, FILM):
                 kept[made].unlink(missing_ok=True)
                 if (folder / made).exists():
                     (folder / made).replace(kept[made])
-        return Mark(case.name, case.student, _case_name(case), report["outcome"], points, lost,
-                    str(folder.relative_to(out)) if record.driven else "",
-                    report.get("note", ""), record.submission_sha256)
+        return mark
 
     def passed(self, results: Sequence[Mark]) -> bool:
         return all(mark.outcome != NOT_RUN for mark in results)
 
     def line(self, result: Mark) -> str:
-        had = f"{result.name}: {result.points:g} points, {result.outcome}"
-        if not result.lost:
-            return had
-        lost, _, why = max((each.partition(" points: ") for each in result.lost),
-                           key=lambda each: float(each[0]))
-        return f"{had}; lost {lost} points: {why}"
+        rules = self.options.rules
+        one_case = rules.seeds * (1 + len(rules.tracks)) == 1
+        who = result.student if one_case else f"{result.student}, {case_title(result.case)}"
+        return f"{who}: {sentence(result, rules.points.most)}"
 
     def table(self, results: Sequence[Mark]) -> str:
         rows = [(f"{mean([mark.points for mark in marks]):7.2f}", student)
