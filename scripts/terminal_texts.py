@@ -50,7 +50,7 @@ OF_ARGPARSE = (
 # Of the system, by the error numbers that a learner meets.
 OF_SYSTEM = (
     "No such file or directory", "Permission denied", "Is a directory", "Not a directory",
-    "File exists", "No space left on device", "Connection refused")
+    "File exists", "No space left on device", "Connection refused", "[Errno {0}] {1}: {2}")
 # Of rospy and of turtlesim's answer in it.
 OF_ROSPY = ("service [{0}] responded with an error: b'service cannot process request: {1}'",
             "A turtle named [{0}] already exists")
@@ -129,7 +129,9 @@ OF_LISTS = ("one of {0}", "controller {0}", "File is not a zip file", "Ctrl-C en
             "line {0}, column {1} (file {2})", "line {0}, column {1}: {2}", "write &amp; for &",
             "write &gt; for >", "it must be a whole number of pixels, 1 or more",
             "link of model {0}", "joint of model {0}", "{0} when evaluating expression {1}",
-            "map on {0}", "laser scans on {0}", "there are: {0}", "is {0} meant?",
+            "camera_width is {0}", "camera_height is {0}", "Commands:",
+            "WRONG  {0}. Type: {1}", "map on {0}", "laser scans on {0}", "there are: {0}",
+            "is {0} meant?",
             'not yet: "{0}" passed to lookupTransform argument {1} does not exist.')
 # Of missing_headers.cmake.
 OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its place: {3}",
@@ -139,7 +141,8 @@ OF_CMAKE = ("{0}: target {1} is left out: {2}. What the simulator has in its pla
 OF_VALUES = ("none", "unknown", "a number", "a text", "this user", "parent link", "child link",
              "link", "joint", "model", "sensor", "function call", "function definition",
              "class definition", "literal", "expression", "attribute", "simulated clock /clock",
-             "the disk", "driving", "scene", "tracker", "follower", "mission", "operation",
+             "the disk", "<input>", "driving",
+             "scene", "tracker", "follower", "mission", "operation",
              "method", "avoider", "reached", "contact", "late",
              "Graph", "Plot", "Cameras", "Console", "TF", "Bags", "Topics", "Drive", "Services",
              "Parameters")

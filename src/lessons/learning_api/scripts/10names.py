@@ -9,8 +9,8 @@ def main():
     rospy.init_node("names")
     for name in ("/chatter", "chatter", "~chatter"):  # global, relative, private  全局、相对、私有
         publisher = rospy.Publisher(name, String, queue_size=1)
-        rospy.loginfo("%s is %s", name, publisher.resolved_name)
-    rospy.loginfo("~speed is %s", rospy.get_param("~speed", "not set"))
+        rospy.loginfo("%s -> %s", name, publisher.resolved_name)
+    rospy.loginfo("~speed = %s", rospy.get_param("~speed", "not set"))
 
 
 if __name__ == "__main__":

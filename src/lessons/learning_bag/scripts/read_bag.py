@@ -18,7 +18,7 @@ def main():
             for topic, message, time in bag.read_messages(topics=[TOPIC]):
                 rospy.loginfo("%.3f %s: %s", time.to_sec(), topic, message.data)
     except (OSError, rosbag.ROSBagException) as error:
-        sys.exit(f"read_bag.py: {error}: run write_bag.py here first")
+        sys.exit(f"read_bag.py: {error}: run write_bag.py here first, which writes {FILE}")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 """check_network: each wrong setting is named, and nothing else."""
 
+import dataclasses
+import re
 import subprocess
 import sys
 import threading
@@ -23,6 +25,7 @@ from nav_demo.network.settings import (
     check_own_name,
     split_uri,
 )
+from terminal_language.catalogue import read_catalogue
 
 SCRIPT = Path(__file__).resolve().parents[1] / "scripts" / "check_network"
 KNOWN = {"localhost": "127.0.0.1", "robot": "10.0.0.2", "laptop": "10.0.0.1", "debian": "127.0.1.1",
@@ -44,7 +47,7 @@ def test_uris(uri, place):
 
 @pytest.mark.parametrize("environment, words", [
     ({}, "ROS_MASTER_URI is not set"),
-    ({"ROS_MASTER_URI": "robot:11311"}, "'robot:11311', which is not http://HOST:PORT"),
+    ({"ROS_MASTER_URI": "robot:11311"}, "'robot:11311', and not of the form http://HOST:PORT"),
     ({"ROS_MASTER_URI": "http://rebot:11311"}, "'rebot', and this machine knows no address")])
 def test_master_uri(environment, words):
     (finding,) = check_master(environment, AROUND)
@@ -59,7 +62,7 @@ def test_a_right_master_uri():
     ({"ROS_HOSTNAME": "localhost"}, "ROS_HOSTNAME is 'localhost', which is 127.0.0.1"),
     ({}, "hostname is 'debian', which is 127.0.1.1: the master is on another machine (robot)"),
     ({"ROS_IP": "10.0.0.9"}, "ROS_IP is '10.0.0.9', which is 10.0.0.9, no address of this machine"),
-    ({"ROS_IP": "laptop"}, "ROS_IP is 'laptop', which is not an address"),
+    ({"ROS_IP": "laptop"}, "ROS_IP is 'laptop', and that is no IP address"),
     ({"ROS_HOSTNAME": "lap"}, "not even this machine knows its address"),
     ({"ROS_HOSTNAME": "http://laptop"}, "no http:// and no port")])
 def test_own_name(own, words):
@@ -89,11 +92,11 @@ def test_which_name_others_are_told():
 
 
 @pytest.mark.parametrize("node, words", [
-    (Node("/a", "http://robot:1", "", "silence"), "/a registered as 'robot', and this machine"),
+    (Node("/a", "http://robot:1", "", "silence"), "/a: registered as 'robot', and this machine"),
     (Node("/a", "http://localhost:1", "127.0.0.1", "refused"), "leads each machine to itself"),
     (Node("/a", "http://robot:1", "10.0.0.2", "refused"), "nobody listens there any more"),
-    (Node("/a", "http://robot:1", "10.0.0.2", "silence"), "does not answer at robot:1"),
-    (Node("/a", "rosrpc://x", "", "silence"), "not an address")])
+    (Node("/a", "http://robot:1", "10.0.0.2", "silence"), "no answer at robot:1"),
+    (Node("/a", "rosrpc://x", "", "silence"), "no address")])
 def test_nodes(node, words):
     (finding,) = check_nodes([node], master_is_here=False)
     assert words in str(finding)
@@ -116,7 +119,7 @@ def test_nodes_that_answer_are_right():
 
 @pytest.mark.parametrize("answer, words", [
     ("refused", "there is no master, or it listens to its own machine alone"),
-    ("silence", "does not answer"), ("other", "not a ROS master")])
+    ("silence", "no answer from"), ("other", "not a ROS master")])
 def test_master_answers(answer, words):
     (finding,) = check_master_answer(answer, "robot", 11311)
     assert words in finding.wrong and "robot" in finding.remedy
@@ -141,6 +144,43 @@ def test_callback_latency_and_clocks():
     (finding,) = check_clock(False, True, None, "robot")
     assert "/use_sim_time is not true" in finding.wrong
     assert "60 s behind" in check_clock(False, False, -60.2, "robot")[0].wrong
+    assert "60 s ahead" in check_clock(False, False, 60.2, "robot")[0].wrong
+
+
+def test_without_a_network_nobody_is_told_to_call_himself_localhost():
+    alone = dataclasses.replace(AROUND, address_towards=lambda _: "127.0.0.1")
+    (finding,) = check_own_name(ROBOT, alone)
+    assert "network of robot" in finding.remedy and "ROS_IP" not in finding.remedy
+
+
+def findings():
+    """One of each kind."""
+    own = ({"ROS_HOSTNAME": "localhost"}, {}, {"ROS_IP": "10.0.0.9"}, {"ROS_IP": "laptop"},
+           {"ROS_HOSTNAME": "lap"}, {"ROS_HOSTNAME": "http://laptop"},
+           {"ROS_HOSTNAME": "laptop", "ROS_IP": "10.0.0.9"})
+    places = (("http://robot:1", ""), ("http://localhost:1", "127.0.0.1"), ("rosrpc://x", ""),
+              ("http://robot:1", "10.0.0.2"))
+    nodes = [Node(f"/n{at}", uri, address, answer) for answer in ("refused", "silence")
+             for at, (uri, address) in enumerate(places)]
+    yield from (each for uri in ("", "robot:1", "http://rebot:1")
+                for each in check_master({"ROS_MASTER_URI": uri}, AROUND))
+    yield from (each for names in own for each in check_own_name(ROBOT | names, AROUND))
+    yield from (each for node in nodes for each in check_nodes([node] * 5, False))
+    yield from (each for host in ("robot", "localhost")
+                for answer in ("refused", "silence", "other")
+                for each in check_master_answer(answer, host, 11311))
+    yield from check_callback(False, "debian", "robot", "10.0.0.1")
+    yield from check_latency([200], "robot")
+    yield from (each for clock in ((True, False, None), (False, True, None), (False, False, -60),
+                                   (False, False, 60)) for each in check_clock(*clock, "robot"))
+
+
+def test_in_chinese_no_line_is_half_english():
+    chinese = read_catalogue("zh_CN")
+    for finding in findings():
+        sentence = chinese.translate(str(finding)).partition("请输入：")[0]
+        left = re.findall(r"\b(?!ROS )[A-Za-z]{2,} [a-z]{2,}|WRONG|Type", sentence)
+        assert sentence.startswith("错误") and not left, chinese.translate(str(finding))
 
 
 @pytest.fixture

@@ -121,7 +121,7 @@ class Catalogue:
             return Sentence(FAULT, self._exact[FAULT]).filled(
                 {0: name, 1: self._message(fault, depth) or fault})
         name, _, rest = text.partition(": ")
-        program = PROGRAM.fullmatch(name)
+        program = name != "usage" and PROGRAM.fullmatch(name)
         if program and rest in self._exact:
             return f"{self._exact.get(name, name)}: {self._exact[rest]}"
         if (program and 0 < self._weight(rest) >= self._weight(text)

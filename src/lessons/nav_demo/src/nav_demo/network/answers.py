@@ -27,7 +27,7 @@ def check_nodes(nodes: list[Node], master_is_here: bool) -> list[Finding]:
         judged = _judged(node, master_is_here)
         if judged:
             wrong.setdefault(judged, []).append(node.name)
-    return [Finding(f"{_names(names)} {sentence}", remedy)
+    return [Finding(f"{_names(names)}: {sentence}", remedy)
             for (sentence, remedy), names in wrong.items()]
 
 
@@ -35,7 +35,7 @@ def _judged(node: Node, master_is_here: bool) -> tuple[str, str] | None:
     """A node's error and its remedy."""
     place = split_uri(node.uri)
     if place is None:
-        return f"registered {node.uri!r}, which is not an address", "rosnode cleanup"
+        return f"registered at {node.uri!r}, and that is no address", "rosnode cleanup"
     host, port = place
     there = "(on the machine where it runs; then start it again)"
     if not node.address:
@@ -49,7 +49,7 @@ def _judged(node: Node, master_is_here: bool) -> tuple[str, str] | None:
                 f"export ROS_IP=ADDRESS; unset ROS_HOSTNAME {there}")
     if node.answer == "refused":
         return f"registered at {host}:{port}, but nobody listens there any more", "rosnode cleanup"
-    return (f"does not answer at {host}:{port} ({node.address})",
+    return (f"no answer at {host}:{port} ({node.address})",
             f"ping -c 3 {node.address}; if that answers, a firewall is between: sudo ufw allow "
             f"from ADDRESS_OF_THIS_MACHINE, there")
 
@@ -67,7 +67,7 @@ def check_master_answer(answer: str, host: str, port: int) -> list[Finding]:
         "yes": ("", ""),
         "refused": (f"nobody listens at {place}: there is no master{alone}",
                     f"on {host}: export ROS_HOSTNAME={host}; roscore"),
-        "silence": (f"{place} does not answer: the address is wrong, or a firewall is between",
+        "silence": (f"no answer from {place}: the address is wrong, or a firewall is between",
                     f"ping -c 3 {host}"),
         "other": (f"what listens at {place} is not a ROS master",
                   f"roscore -p OTHER_PORT, on {host}, and that port in ROS_MASTER_URI"),
@@ -98,14 +98,15 @@ def check_clock(use_sim_time: bool, has_clock: bool, ahead_s: float | None,
     """Clocks. `ahead_s`: the master's clock minus this one's, s; None if unknown."""
     if use_sim_time:
         return [] if has_clock else [Finding(
-            "/use_sim_time is true and nobody publishes /clock: every node waits for time to pass",
+            "nobody publishes /clock, and /use_sim_time is true: every node waits for time to pass",
             "rosparam set /use_sim_time false, or start the simulator")]
     found = [] if not has_clock else [Finding(
-        "/clock is published, but /use_sim_time is not true: nodes go by the wall's clock",
+        "somebody publishes /clock, but /use_sim_time is not true: nodes go by the wall's clock",
         "rosparam set /use_sim_time true, and start the nodes again")]
     if ahead_s is not None and abs(ahead_s) > CLOCKS_APART:
-        order = "ahead of" if ahead_s > 0 else "behind"
-        found.append(Finding(
-            f"the clock of {host} is {abs(ahead_s):.0f} s {order} this one: transforms will be "
-            f"too old or in the future", "sudo timedatectl set-ntp true, on both machines"))
+        wrong = (f"the clock of {host} is {ahead_s:.0f} s ahead of this one: transforms will be in "
+                 f"the future" if ahead_s > 0 else
+                 f"the clock of {host} is {-ahead_s:.0f} s behind this one: transforms will be too "
+                 f"old")
+        found.append(Finding(wrong, "sudo timedatectl set-ntp true, on both machines"))
     return found

@@ -57,7 +57,7 @@ def check_master(environment: Mapping[str, str], around: Surroundings) -> list[F
         return [Finding("ROS_MASTER_URI is not set: no node finds the master", SAMPLE)]
     place = split_uri(uri)
     if place is None:
-        return [Finding(f"ROS_MASTER_URI is {uri!r}, which is not http://HOST:PORT", SAMPLE)]
+        return [Finding(f"ROS_MASTER_URI is {uri!r}, and not of the form http://HOST:PORT", SAMPLE)]
     host = place[0]
     if not around.addresses_of(host):
         return [Finding(f"ROS_MASTER_URI names {host!r}, and this machine knows no address of it",
@@ -81,7 +81,10 @@ def check_own_name(environment: Mapping[str, str], around: Surroundings) -> list
     """Check ROS_HOSTNAME and ROS_IP, after check_master has found no error."""
     host = split_uri(environment["ROS_MASTER_URI"])[0]
     master = around.addresses_of(host)[0]
-    remedy = f"export ROS_IP={around.address_towards(master)}; unset ROS_HOSTNAME"
+    own = around.address_towards(master)
+    remedy = f"export ROS_IP={own}; unset ROS_HOSTNAME"
+    if is_loopback(own) and not around.is_mine(master):
+        remedy = f"ip route, and connect this machine to the network of {host}"
     name, source = advertised_name(environment, around.own_name)
     found = []
     hostname, ip = environment.get("ROS_HOSTNAME"), environment.get("ROS_IP")
@@ -89,7 +92,7 @@ def check_own_name(environment: Mapping[str, str], around: Surroundings) -> list
         found.append(Finding(f"ROS_HOSTNAME is {hostname!r} and ROS_IP {ip!r}: the second has no "
                              f"effect", "unset ROS_IP"))
     if source == "ROS_IP" and not ADDRESS.fullmatch(name):
-        return [*found, Finding(f"ROS_IP is {name!r}, which is not an address", remedy)]
+        return [*found, Finding(f"ROS_IP is {name!r}, and that is no IP address", remedy)]
     if "/" in name or ":" in name:
         return [*found, Finding(f"{source} is {name!r}: only a name or an address belongs there, "
                                 f"no http:// and no port", remedy)]
