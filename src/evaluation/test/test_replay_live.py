@@ -94,7 +94,7 @@ def test_who_drives_on_from_an_image_with_the_same_program_drives_the_same(tmp_p
         replay.wait_for("image 60 of ")
         replay.type("go")
         said = replay.wait_for("no program sends /cmd_vel: in another terminal, start the ")
-        assert "such as rosrun learning_topic 07follower_ground.py; then type go again" in said
+        assert "rosrun learning_topic 07follower_ground.py; then drive on again (go)" in said
         follower = subprocess.Popen(["rosrun", "learning_topic", "07follower_ground.py"],
                                     env=joined)
         said = ""

@@ -18,7 +18,7 @@ from learning_laser import hall
 from evaluation.command_line import Parser, one_of
 from evaluation.picture import CAR, FAINT, Plan, lap_colour, write_tiles
 from evaluation.report import cell, mean, table
-from evaluation.run_log import RUN_LOG, begin_run_log
+from evaluation.run_log import RUN_LOG, begin_run_log, marks_in
 from evaluation.run_page import RECORDING, begin_recording, write_run_page
 from evaluation.trial import Case, Trial
 from run_session.failure import RunError
@@ -95,7 +95,8 @@ class AvoidTrial(Trial):
             states = watch(launched, log)
         finally:
             session.family.stop()
-        write_run_page(world.with_suffix(f".{RECORDING}"), world.with_suffix(".html"), case.name)
+        write_run_page(world.with_suffix(f".{RECORDING}"), world.with_suffix(".html"), case.name,
+                       marks=marks_in(world.with_suffix(f".{RUN_LOG}")))
         return case, states
 
     def judge(self, record: tuple[Case, list[dict]]) -> DriveResult:

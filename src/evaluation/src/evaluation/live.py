@@ -28,7 +28,7 @@ from evaluation.command_line import (
 )
 from evaluation.film import FilmFile
 from evaluation.lap import LapScorer, Sample, fingerprint
-from evaluation.run_log import RUN_LOG, add_marks, begin_run_log
+from evaluation.run_log import RUN_LOG, add_marks, begin_run_log, marks_in
 from evaluation.run_page import RECORDING, RUN_PAGE, begin_recording, write_run_page
 from run_session.course_file import CourseFile
 from run_session.failure import RunError
@@ -224,7 +224,8 @@ def _finish_film(drive: LiveDrive, found: dict | None) -> None:
             drive.out / LOG / RECORDING, drive.out / RUN_PAGE,
             f"{drive.driver or drive.program}: {translated(found['outcome'])}", drive.summary,
             drive.out / "run.mp4",
-            [drive.out / name for name in drive.writes if name.endswith(".png")], drive.curves())
+            [drive.out / name for name in drive.writes if name.endswith(".png")], drive.curves(),
+            marks_in(drive.out / RUN_LOG) or drive.marks())
     here = Path.cwd()
     made = [drive.out / name for name in drive.writes if (drive.out / name).exists()]
     shown = [str(path.relative_to(here) if path.is_relative_to(here) else path) for path in made]

@@ -115,6 +115,8 @@ class Replay:
         rospy.init_node(PROGRAM, anonymous=False, disable_signals=True, disable_rosout=True)
         for name, word in (("next_image", "n"), ("previous_image", "p")):
             rospy.Service(f"~{name}", Trigger, lambda _request, word=word: self._wait_for(word))
+        rospy.Service("~carry_out", Trigger,  # of the page's time bar
+                      lambda _request: self._wait_for(str(rospy.get_param("~word"))))
         # A copy: `keep` may move the log itself.
         replayed = shutil.copy(self._path, self._session.out / LOG / RUN_LOG)
         rospy.set_param("/gazebo/replay", str(replayed))
@@ -211,7 +213,7 @@ class Replay:
         """Unpause, once a program is connected; the world then waits for its answers."""
         if missing := self._missing_driver():
             raise RunError(f"{missing}: in another terminal, start the program that drives, "
-                           f"such as {self._driver()}; then type go again")
+                           f"such as {self._driver()}; then drive on again (go)")
         self._on_log = False
         simulator.call(simulator.UNPAUSE, Empty)
         return "the world goes on, in lockstep; p or a time goes back into the run"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import rosgraph
 
-from bullet_sim.formats.run_log import Mark, append_marks
+from bullet_sim.formats.run_log import Mark, RunLogError, append_marks, read_run_log
 
 RUN_LOG, EARLIER = "run.log.gz", "earlier.run.log.gz"
 # By which launch files and the simulator choose robots and find files.
@@ -24,6 +24,14 @@ def add_marks(path: Path, marks: Sequence[Mark]) -> None:
             append_marks(path, marks)
     except OSError as error:
         print(f"no marks in {path}: {error.strerror}; all other results are there", file=sys.stderr)
+
+
+def marks_in(path: Path) -> Sequence[Mark]:
+    """The marks of a run's log; none if there is no log that can be read."""
+    try:
+        return read_run_log(path).marks
+    except (OSError, RunLogError):
+        return ()
 
 
 def begin_run_log(master_uri: str, path: Path, words: Sequence[str], driver: str,

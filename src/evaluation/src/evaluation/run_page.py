@@ -10,6 +10,7 @@ import rosgraph
 from sim_viewer.replay_page import Curve, Shown, read_recording, replay_page
 
 from bullet_sim.errors import shortened
+from bullet_sim.formats.run_log import Mark
 from run_session.files import write_whole
 
 RUN_PAGE, RECORDING = "run.html", "recording.jsonl"
@@ -23,7 +24,7 @@ def begin_recording(master_uri: str, recording: Path) -> None:
 
 def write_run_page(recording: Path, page: Path, title: str, text: str = "",
                    film: Path | None = None, pictures: Sequence[Path] = (),
-                   curves: Sequence[Curve] = ()) -> None:
+                   curves: Sequence[Curve] = (), marks: Sequence[Mark] = ()) -> None:
     """Write the page and remove the recording. If nothing was recorded there is no page, nor one of
     an earlier run; if it cannot be made, a line says why."""
     try:
@@ -32,7 +33,7 @@ def write_run_page(recording: Path, page: Path, title: str, text: str = "",
         if motion is not None:
             speed = Curve(("speed", "速度"), "m/s", motion.times, motion.speeds())
             shown = Shown(title, text, film if film and film.exists() else None,
-                          [path for path in pictures if path.exists()], [speed, *curves])
+                          [path for path in pictures if path.exists()], [speed, *curves], marks)
             write_whole(page, replay_page(motion, shown).encode())
         recording.unlink(missing_ok=True)
     except OSError as error:

@@ -12,6 +12,7 @@ from background import wait_until
 from sim_viewer.replay_page import MOST_MOMENTS, Curve, Shown, read_recording, replay_page
 
 from bullet_sim.description import Box, LightDescription, Material, SceneDescription, Visual
+from bullet_sim.formats.run_log import Mark
 from bullet_sim.pose import Pose
 from bullet_sim.rendering.scene import Scene
 from bullet_sim.rendering.scene_text import scene_to_text
@@ -155,5 +156,53 @@ def test_from_disk_the_slider_moves_robot_and_film_and_nothing_is_asked_of_a_net
         assert page.errors == []
         assert page.requests
         assert {url.partition(":")[0] for url in page.requests} <= {"file", "data", "blob"}
+    finally:
+        browser.close()
+
+
+OPEN_OTHER = """(async () => {
+  const data = new DataTransfer();
+  data.items.add(new File([%s], "other.html"));
+  const input = document.querySelector("#other");
+  input.files = data.files;
+  input.dispatchEvent(new Event("change"));
+})()"""
+
+
+@pytest.mark.timeout(180)
+def test_a_second_run_is_laid_over_the_first_and_put_away_again(recorded, tmp_path):
+    def page_of(title, last, slope):
+        times = np.linspace(0, last, 50)
+        motion = recorded(scene(ROBOT), NAMES, *(at(time, slope * time) for time in times))
+        return replay_page(motion, Shown(title, marks=[Mark("lost", 2.0, "here")], curves=[
+            Curve(("beside the line", "偏离线"), "m", times, slope * times)]))
+
+    file = tmp_path / "run.html"
+    file.write_text(page_of("before", 5, 0.2))
+    captions = "[...document.querySelectorAll('figcaption')].map((one) => one.textContent)"
+    browser = chromium.Browser()
+    try:
+        page = browser.open(file.as_uri())
+        page.wait_for("document.querySelector('.hint')?.hidden")
+        assert page.evaluate("document.querySelector('.mark.lost').title") == (
+            "line lost (here), 2.00 s")
+        page.evaluate("document.querySelector('.mark.lost').click()")
+        assert page.evaluate("document.querySelector('#time').value") == "2"
+        page.evaluate(OPEN_OTHER % json.dumps("no page"))
+        page.wait_for("document.querySelector('.legend').textContent"
+                      " === 'other.html is no run.html of a run'")
+        page.evaluate(OPEN_OTHER % json.dumps(page_of("after", 10, 0.1)))
+        page.wait_for("document.querySelector('.legend').textContent === '■ before■ after×'")
+        assert page.evaluate("document.querySelector('#time').max") == "10"
+        assert [line.split(" m ")[0] for line in page.evaluate(captions)] == [
+            "beside the line: 0.41 | 0.20", "difference, beside the line: -0.20"]
+        orange = "orange to be seen"
+        wait_until(lambda: (lambda bgr: ((bgr[..., 2] > 200) & (bgr[..., 0] < 60)
+                                         & (bgr[..., 1] > 100)).any())(
+            page.picture()[60:400, :700]), orange)
+        page.evaluate("document.querySelector('#alone').click()")
+        assert page.evaluate("document.querySelector('#time').max") == "5"
+        assert len(page.evaluate(captions)) == 1
+        assert page.errors == []
     finally:
         browser.close()

@@ -5,6 +5,7 @@ import { language, switchLanguage, t } from "./language.js";
 import { call, connected, onConnection, tell, watch } from "./link.js";
 import { simulationBar } from "./simulation_bar.js";
 import { TABS } from "./tabs.js";
+import { timeline } from "./timeline.js";
 
 const link = { call, tell, watch, onConnection, connected, control: false };
 const content = document.getElementById("content");
@@ -71,6 +72,7 @@ async function start() {
   const loading = Object.entries(TABS).map(async ([name, path]) => [name, await import(path)]);
   const [loaded] = await Promise.all([Promise.allSettled(loading), untilConnected()]);
   simulationBar(document.getElementById("simulation"), link);
+  timeline(document.getElementById("timeline"), link);
   for (const one of loaded) {
     if (one.status === "fulfilled") addTab(...one.value);
     else console.error(one.reason);

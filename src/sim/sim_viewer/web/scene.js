@@ -56,7 +56,8 @@ class Tab {
     this._shadows = new GroundShadows();
     try {
       this._viewport = new Viewport(this._box,
-        new THREE.Group().add(this._links.root, this._shadows.root));
+        new THREE.Group().add(this._links.root, this._shadows.root,
+          ...(link.overlay ? [link.overlay.root] : [])));
     } catch (error) {
       this._hint.textContent = t("This browser has no WebGL: ", "此浏览器没有 WebGL：") + error.message;
       return;

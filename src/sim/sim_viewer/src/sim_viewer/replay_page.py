@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import rospkg
 
+from bullet_sim.formats.run_log import Mark
 from bullet_sim.rendering.scene_text import SceneContent, scene_from_text
 from sim_viewer.page_scene import Meshes, page_scene, pose_row
 
@@ -72,6 +73,7 @@ class Shown:
     film: Path | None = None
     pictures: Sequence[Path] = ()
     curves: Sequence[Curve] = ()
+    marks: Sequence[Mark] = ()  # moments worth going back to
 
 
 MOST_MOMENTS = 3000  # in a page, of a link or a curve
@@ -138,6 +140,7 @@ def replay_page(motion: Motion, shown: Shown) -> str:
         "pictures": [_url("image/png", path.read_bytes()) for path in shown.pictures],
         "curves": [{"name": curve.name, "unit": curve.unit, **_shown_moments(curve)}
                    for curve in shown.curves if len(curve.times)],
+        "marks": [list(mark) for mark in shown.marks],
     }
     web = Path(rospkg.RosPack().get_path("sim_viewer")) / "web"
     modules = {f"web/{path}": _url("text/javascript", text.encode())

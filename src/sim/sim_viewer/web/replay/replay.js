@@ -3,42 +3,27 @@
 import { element } from "../dom.js";
 import { language, switchLanguage, t } from "../language.js";
 import { mount } from "../scene.js";
+import { comparison, difference } from "./compare.js";
+import { Motion } from "./motion.js";
+import { Overlay } from "./overlay.js";
 import { plot } from "./plot.js";
+import { TimeBar } from "./time_bar.js";
 
 const SPEEDS = [0.5, 1, 2, 4, 8];
 const FEW_MS = 40; // between two pictures while it plays
 
 const run = JSON.parse(document.getElementById("run").textContent);
-const { times } = run;
-const poses = new Float32Array(
-  Uint8Array.from(atob(run.poses), (letter) => letter.charCodeAt(0)).buffer);
-const width = 7 * run.names.length;
-const first = times[0];
-const last = times[times.length - 1];
-
-/** Where everything is at a time, between two moments that were recorded. */
-function rowsAt(time) {
-  let next = times.findIndex((one) => one >= time);
-  if (next < 0) next = times.length - 1;
-  const before = Math.max(next - 1, 0);
-  const share = next > before ? (time - times[before]) / (times[next] - times[before]) : 1;
-  const rows = new Float32Array(width);
-  for (let at = 0; at < width; at += 7) {
-    const [a, b] = [before, next].map((row) => poses.subarray(row * width + at, row * width + at + 7));
-    const turned = a[3] * b[3] + a[4] * b[4] + a[5] * b[5] + a[6] * b[6] < 0 ? -1 : 1;
-    for (let i = 0; i < 7; i += 1) {
-      rows[at + i] = a[i] + share * ((i < 3 ? 1 : turned) * b[i] - a[i]);
-    }
-  }
-  return rows;
-}
+const motion = new Motion(run);
+const { first } = motion;
 
 class Player {
   constructor() {
     this.time = first;
+    this.last = motion.last;
+    this.overlay = new Overlay(() => this.show(this.time));
     this._moves = new Set();
-    this.slider = element("input", { type: "range", id: "time", min: first, max: last, step: 0.02,
-      value: first, oninput: () => { this.play(false); this.show(Number(this.slider.value)); } });
+    this.bar = new TimeBar("time", (time) => this.choose(time));
+    this.bar.range(first, this.last, run.marks);
     this.text = element("span", { class: "mono" });
     this.button = element("button", { id: "play", class: "primary",
       onclick: () => this.play(!this.playing) });
@@ -55,17 +40,29 @@ class Player {
     }
     take({ names: run.names });
     this._moves.add(take);
-    take(new DataView(rowsAt(this.time).buffer));
+    take(new DataView(motion.rowsAt(this.time).buffer));
     return () => this._moves.delete(take);
   }
 
-  /** Where the 3D view finds a mesh or a texture; a texture that nobody could read: nothing. */
   address(path) {
-    return run.files[path] ?? "data:,";
+    return motion.address(path);
+  }
+
+  /** Lay another run over this one, or none. */
+  compare(other) {
+    this.last = Math.max(motion.last, other?.last ?? 0);
+    this.bar.range(first, this.last, run.marks);
+    this.overlay.show(motion, other);
+    this.show(Math.min(this.time, this.last));
+  }
+
+  choose(time) {
+    this.play(false);
+    this.show(time);
   }
 
   play(wanted) {
-    if (wanted && this.time >= last) this.show(first);
+    if (wanted && this.time >= this.last) this.show(first);
     this.playing = wanted;
     this.button.textContent = wanted ? t("Pause", "暂停") : t("Play", "播放");
     this._at = performance.now();
@@ -75,29 +72,32 @@ class Player {
 
   _go() {
     const now = performance.now();
-    const time = Math.min(last, this.time + (now - this._at) / 1000 * Number(this.speed.value));
+    const time = Math.min(this.last, this.time + (now - this._at) / 1000 * Number(this.speed.value));
     this._at = now;
     this.show(time);
-    if (time >= last) this.play(false);
+    if (time >= this.last) this.play(false);
   }
 
   show(time) {
     this.time = time;
-    this.slider.value = time;
-    this.text.textContent = `${time.toFixed(1)} s / ${last.toFixed(1)} s`;
-    const rows = new DataView(rowsAt(time).buffer);
+    this.bar.show(time);
+    this.text.textContent = `${time.toFixed(1)} s / ${this.last.toFixed(1)} s`;
+    this.overlay.move(time);
+    const rows = new DataView(motion.rowsAt(time).buffer);
     for (const take of this._moves) take(rows);
-    for (const move of this.others) move(time);
+    for (const { mark } of this.plots) mark(time);
+    this.wind?.();
   }
 
-  others = []; // what else shows the moment
+  plots = [];
+  wind = null; // the film
 }
 
 /** The film; it has been made at another speed, so it is always wound to the moment. */
 function filmBox(player) {
   const video = element("video", { muted: true, playsinline: true, id: "film" });
   const wind = () => {
-    const wanted = (player.time - first) / (last - first) * video.duration;
+    const wanted = (player.time - first) / (motion.last - first) * video.duration;
     if (video.readyState && !video.seeking && Math.abs(wanted - video.currentTime) > 0.05) {
       video.currentTime = Math.min(wanted, video.duration - 0.01);
     }
@@ -106,7 +106,7 @@ function filmBox(player) {
     video.src = URL.createObjectURL(blob);
   });
   for (const event of ["loadeddata", "seeked"]) video.addEventListener(event, wind);
-  player.others.push(wind);
+  player.wind = wind;
   return video;
 }
 
@@ -116,11 +116,20 @@ const side = element("div", { class: "side" });
 if (run.film) side.append(filmBox(player));
 for (const picture of run.pictures) side.append(element("img", { src: picture, alt: t("path", "路线") }));
 const curves = element("div", { class: "curves" });
-for (const curve of run.curves) {
-  const made = plot(curve, language, first, last, (time) => { player.play(false); player.show(time); });
-  curves.append(made.box);
-  player.others.push(made.mark);
+
+/** All curves, over those of the other run, and by how much they differ in m. */
+function showCurves(other) {
+  const choose = (time) => player.choose(time);
+  player.plots = run.curves.flatMap((curve) => {
+    const same = other?.run.curves.find(({ name }) => name[0] === curve.name[0]);
+    const differs = same && curve.unit === "m" ? [difference(curve, same)] : [];
+    return [plot(curve, language, first, player.last, choose, same),
+      ...differs.map((one) => plot(one, language, first, player.last, choose))];
+  });
+  curves.replaceChildren(...player.plots.map(({ box }) => box));
+  player.show(player.time);
 }
+
 document.documentElement.lang = language;
 document.body.append(
   element("header", {}, element("strong", { text: run.title }), element("span", { class: "grow" }),
@@ -128,7 +137,8 @@ document.body.append(
       text: language === "zh" ? "English" : "中文" })),
   element("main", { class: "replay" },
     element("div", {}, view, element("div", { class: "row player" },
-      player.button, player.slider, player.text, player.speed), curves),
+      player.button, player.bar.box, player.text, player.speed),
+      comparison(run.title, (other) => { player.compare(other); showCurves(other); }), curves),
     side, ...(run.text ? [element("pre", { class: "card figures", text: run.text })] : [])));
 mount(view, player);
-player.show(first);
+showCurves(null);

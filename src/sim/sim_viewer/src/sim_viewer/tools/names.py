@@ -17,6 +17,11 @@ RESET_WORLD = "/reset_world"
 RESET_SIMULATION = "/reset_simulation"
 PHYSICS = "/get_physics_properties"
 WORLD = "/get_world_properties"
+RUN_LOG = "/run_log"  # parameters of the simulator: the log that it writes
+REPLAY = "/replay"  # the one that it repeats
+
+CARRY_OUT = "/replay/carry_out"  # of make replay, with the parameter
+REPLAY_WORD = "/replay/word"
 
 LONGEST_TOPIC = 256  # characters
 

@@ -73,18 +73,18 @@ class Calls:
         """
         return await self.run(name, lambda: rospy.ServiceProxy(name, kind)(*fields))
 
-    async def run(self, name: str, work: Callable[[], Any]) -> Any:
-        """Run `work`, which calls the services of `name`, and return its result; Refused as `call`.
-        """
+    async def run(self, name: str, work: Callable[[], Any], limit: float = TIMEOUT) -> Any:
+        """Run `work`, which calls the services of `name`, and return its result; Refused as `call`,
+        after `limit` s."""
         if self._under_way >= MOST_AT_ONCE:
             raise Refused(f"{MOST_AT_ONCE} calls are still waiting for their answers")
         answer = self._loop.create_future()
         self._under_way += 1
         threading.Thread(target=self._work, args=(work, answer), daemon=True).start()
         try:
-            return await asyncio.wait_for(asyncio.shield(answer), TIMEOUT)
+            return await asyncio.wait_for(asyncio.shield(answer), limit)
         except TimeoutError:
-            raise Refused(f"{name} has not answered within {TIMEOUT:.0f} s") from None
+            raise Refused(f"{name} has not answered within {limit:.0f} s") from None
         except (rospy.ServiceException, rospy.ROSException) as error:
             raise Refused(f"{name}: {error}") from None
 
