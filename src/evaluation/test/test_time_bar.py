@@ -93,7 +93,8 @@ def test_in_a_run_that_goes_on_it_says_what_to_type(browser, tmp_path):
     lines = []
     run = subprocess.Popen(
         [sys.executable, Path(__file__).parent.parent / "scripts/course_run.py", "--fast",
-         "--no-video", "--any-port", "--camera", "320x240", "--duration", "900", "--laps", "9",
+         "--no-video", "--any-port", "--camera", "320x240", "--duration", "900",
+         "--follower", "07follower_ground.py",
          "--launch-arg", "real_time_factor:=1", "--out", tmp_path / "run"], text=True,
         env=os.environ | {"PYTHONUNBUFFERED": "1"}, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT)
