@@ -44,7 +44,7 @@ def test_in_a_replay_the_bar_goes_to_each_image_and_drives_on(browser, tmp_path)
     path = drive("course", 3, tmp_path / "run", 5)
     append_marks(path, [Mark("lost", 3.0, "beside the line"), Mark("my corner", 4.0)])
     log = read_run_log(path)
-    replay = Replay("--run", path, "--at", "2.0", "--out", tmp_path / "replay")
+    replay = Replay("--run", path, "--at", "2.0", "--control", "--out", tmp_path / "replay")
     follower = None
     try:
         url = re.search(r"http://\S+", replay.wait_for("the page in the browser: "))[0]
@@ -86,6 +86,28 @@ def test_in_a_replay_the_bar_goes_to_each_image_and_drives_on(browser, tmp_path)
         if follower is not None:
             follower.terminate()
             follower.wait(60)
+
+
+def test_a_page_without_control_shows_where_the_world_is_and_says_what_to_type(browser, tmp_path):
+    path = drive("course", 3, tmp_path / "run", 3)
+    log = read_run_log(path)
+    replay = Replay("--run", path, "--at", "2.0", "--out", tmp_path / "replay")
+    try:
+        url = re.search(r"http://\S+", replay.wait_for("the page in the browser: "))[0]
+        page = browser.open(url)
+        wait_for_image(page, log.image_at(2.0))
+        assert page.evaluate("['image-before', 'image-next', 'drive-on'].every("
+                             "(id) => document.getElementById(id).hidden)")
+        drag_to(page, 1.5)
+        assert page.evaluate("document.querySelector('#moment-said').textContent") == (
+            f"This page may only look: type image:{log.image_at(1.5)} where make replay runs, or "
+            "start that with CONTROL=1.")
+        wait_for_image(page, log.image_at(2.0))
+        replay.type(f"image:{log.image_at(1.5)}")
+        wait_for_image(page, log.image_at(1.5))
+        assert page.errors == []
+    finally:
+        replay.end()
 
 
 def test_in_a_run_that_goes_on_it_says_what_to_type(browser, tmp_path):

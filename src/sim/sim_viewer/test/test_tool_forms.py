@@ -152,9 +152,9 @@ def test_the_numbers_of_a_type_are_all_offered_and_all_fit():
 
 LOOKING = {"bag_info", "parameter", "parameters", "plot_expand", "plot_fields", "rviz_change",
            "rviz_config", "rviz_drawn", "rviz_types", "service", "services"}
-CHANGING = {"call_service", "delete_parameter", "pause", "play", "record", "reset", "rviz_feedback",
-            "rviz_menu", "rviz_publish", "rviz_tool", "set_parameter", "step", "stop_play",
-            "stop_record"}
+CHANGING = {"call_service", "delete_parameter", "pause", "play", "record", "reset", "rewind",
+            "rviz_feedback", "rviz_menu", "rviz_publish", "rviz_tool", "set_parameter", "step",
+            "stop_play", "stop_record"}
 
 
 def test_only_looking_needs_no_control():

@@ -48,6 +48,14 @@ export function timeline(place, link) {
       offer(image);
       return;
     }
+    if (!link.control) {
+      present();
+      said.textContent = t(
+        `This page may only look: type image:${image} where make replay runs, or start that with ` +
+        "CONTROL=1.",
+        `本页只能查看：请在运行 make replay 的终端里输入 image:${image}，或用 CONTROL=1 启动它。`);
+      return;
+    }
     wish = { image };
     bar.show(run.times[image - 1]);
     say(image);
@@ -120,7 +128,7 @@ export function timeline(place, link) {
     run = { times: [], marks: [], ...data };
     place.hidden = !run.times.length;
     if (place.hidden) return;
-    for (const one of [previous, next, drive]) one.hidden = Boolean(run.command);
+    for (const one of [previous, next, drive]) one.hidden = Boolean(run.command) || !link.control;
     const kept = bar.slider.value;
     bar.range(run.command ? 0 : run.times[0], run.times.at(-1), run.marks);
     bar.show(kept);

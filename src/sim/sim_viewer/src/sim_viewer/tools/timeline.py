@@ -22,12 +22,9 @@ MAY = re.compile(r"image:[1-9][0-9]{0,8}|go")
 LIMIT = 3600.0  # s, wall; as in make replay
 
 
-@operation("rewind")
+@operation("rewind", control=True)
 async def rewind(context: Any, to: str) -> None:
-    """Have make replay go to `image:700`, or drive on: `go`. Refused with its reason.
-
-    A page without control may do so, too: the world is a recorded run.
-    """
+    """Have make replay go to `image:700`, or drive on: `go`. Refused with its reason."""
     if not MAY.fullmatch(to):
         raise Refused(f"to is {to!r:.40}; there are image:N and go")
 
