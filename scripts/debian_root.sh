@@ -66,8 +66,14 @@ explain() {
   ! network_failed "$2" || fail $"the package archive cannot be reached ($log says more): connect, or correct MIRROR=, then type this again"
   fail_with_log "$1" "$2"
 }
+# Unmount what a debootstrap that was killed has left, by sudo if that is given.
+unmount_rest() {
+  local mounted
+  mounted=$(awk -v at="$debian.new/" 'index($2, at) == 1 {print $2}' /proc/self/mounts | sort -r)
+  [ -z "$mounted" ] || "$@" xargs umount <<< "$mounted" || fail $"$debian.new is still in use: end debootstrap, then type this again"
+}
 make_debian() {
-  local user=$1 new=$debian.new free line mounted
+  local user=$1 new=$debian.new free line
   mkdir -p "$place"
   exec 8< "$place"
   flock -n 8 || { say $"Another terminal is making this Debian: waiting for it."; flock 8; }
@@ -76,8 +82,7 @@ make_debian() {
     [ "$free" -ge "$disk_mb" ] || fail $"not enough disk space: $place has $free MB free, $disk_mb MB are needed"
     use_mirror "$state" "$release"
     install_debootstrap
-    mounted=$(awk -v at="$new/" 'index($2, at) == 1 {print $2}' /proc/self/mounts | sort -r)  # by a debootstrap that was killed
-    [ -z "$mounted" ] || xargs umount <<< "$mounted"
+    unmount_rest
     rm -rf --one-file-system "$new" "$debian"
     doing=$"debootstrap is still running" logged debootstrap debootstrap --arch="$architecture" --variant=minbase --keyring="$keyring" \
       --include=ca-certificates,git,make,procps,sudo "$release" "$new" ${archive:+"$archive"} ||
@@ -104,6 +109,7 @@ add_rules() {
 }
 remove() {
   [ -e "$place" ] || { say $"There is no Debian to remove."; return; }
+  unmount_rest sudo
   sudo rm -rf --one-file-system "$place" "$rule" || fail $"sudo refused $(id -un): $place stays"
   say $"$place is removed."
 }
@@ -137,7 +143,7 @@ if ! is_ready "${needed[@]}"; then
   (cd "$root" && cp -r --parents scripts src/interfaces/terminal_language "$copy")
   cd "$copy"
   sudo "MIRROR=${MIRROR:-}" "http_proxy=${http_proxy:-}" "https_proxy=${https_proxy:-}" "LANGUAGE=${LANGUAGE:-}" \
-    scripts/debian_root.sh --make "$passwordless" "$(id -un)" "${needed[@]}" || exit 2
+    bash scripts/debian_root.sh --make "$passwordless" "$(id -un)" "${needed[@]}" || exit 2
   cd "$OLDPWD"
   rm -rf "$copy"
 fi

@@ -203,15 +203,17 @@ def test_after_a_crash_in_the_middle_the_next_call_goes_on(tmp_path, roots_part_
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="root alone may mount and change its root folder")
-def test_what_a_killed_debootstrap_mounted_is_unmounted(tmp_path):
+@pytest.mark.parametrize("command", ["course.sh", "debian_root.sh --remove"])
+def test_what_a_killed_debootstrap_mounted_is_unmounted(tmp_path, command):
     machine = Machine(tmp_path, UBUNTU)
     machine.forget_what_root_does()
     (machine.place / "debian.new/proc").mkdir(parents=True)
     done = subprocess.run(
-        ["unshare", "-m", "bash", "-c", 'mount -t tmpfs none "$0" && scripts/course.sh',
+        ["unshare", "-m", "bash", "-c", f'mount -t tmpfs none "$0" && scripts/{command}',
          machine.place / "debian.new/proc"], cwd=tmp_path, text=True, capture_output=True,
         timeout=60, check=False)
     assert (done.returncode, done.stderr) == (0, "")
+    assert machine.place.exists() == (command == "course.sh")
 
 
 def test_one_of_another_version_is_kept_and_entered_as_this_version_does(tmp_path):

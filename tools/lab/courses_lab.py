@@ -15,6 +15,7 @@ import os
 import shlex
 from pathlib import Path
 from typing import Any
+from weakref import WeakSet
 
 from folder import PACKAGE, ROOT, Folder, LabError, offers
 from jupyter_server.base.handlers import APIHandler
@@ -42,6 +43,7 @@ class Terminals:
     def __init__(self, settings: dict[str, Any]) -> None:
         self._settings = settings  # in which another extension puts its manager later
         self._turns: dict[str, asyncio.Lock] = {}
+        self._ready: WeakSet[Any] = WeakSet()  # their first prompt may have left the buffer since
 
     async def type(self, name: str, command: str, folder: Path) -> None:
         """Type this command, once what runs there has ended; LabError if it does not end."""
@@ -50,8 +52,10 @@ class Terminals:
             if name not in manager.terminals:
                 manager.create(name=name, cwd=str(folder))
             terminal = manager.terminals[name]
-            if not await _becomes(lambda: READY in "".join(terminal.read_buffer), START_TIME):
+            if terminal not in self._ready and not await _becomes(
+                    lambda: READY in "".join(terminal.read_buffer), START_TIME):
                 raise LabError(f"the terminal {name} does not start: close it, then try again")
+            self._ready.add(terminal)
             shell = terminal.ptyproc
             if os.tcgetpgrp(shell.fd) != shell.pid:
                 shell.write("\x03")

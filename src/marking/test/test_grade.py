@@ -1,5 +1,6 @@
 """`make grade`: one submission's verdict, for a person, a CI job and its exit code."""
 
+import dataclasses
 import subprocess
 import sys
 import xml.etree.ElementTree as Xml
@@ -9,6 +10,7 @@ import made_up
 import pytest
 from marking.grade import GradingTrial
 from marking.points import Mark
+from marking.submissions import digest
 
 from evaluation.trial import run_trial
 from run_session.failure import RunError
@@ -72,6 +74,34 @@ def test_a_course_that_could_not_be_run_is_no_mark(grading, tmp_path):
     assert junit(tmp_path).get("errors") == "1"
     with pytest.raises(RunError, match="this is no mark"):
         grading.passed(marks)
+
+
+def test_a_verdict_that_is_not_one_is_not_written(grading):
+    assert grading.table(marks_of(100, outcome="not run")) == (
+        "no mark: the course could not be run")
+
+
+def test_just_below_the_pass_line_is_not_shown_as_on_it(grading):
+    assert grading.table(marks_of(59.96)) == "not passed: 59.96 of 100 points, 60 are needed"
+
+
+def test_marks_of_another_program_in_this_folder_do_not_count(grading, tmp_path):
+    mine, other = marks_of(30.0), [dataclasses.replace(each, student="other", name="other/0-1")
+                                   for each in marks_of(95.0)]
+    mine = [dataclasses.replace(each, submission_sha256=digest(tmp_path / "follower.py"))
+            for each in mine]
+    assert grading.from_values(grading.values([*other, *mine])) == mine
+
+
+def test_nobodys_program_runs_unprotected_as_root(tmp_path, monkeypatch):
+    (tmp_path / "follower.py").write_text(made_up.LESSON)
+    monkeypatch.setattr("os.getuid", lambda: 0)
+    monkeypatch.setenv("SUDO_USER", "ann")
+    monkeypatch.setattr("marking.grade.available", lambda: (_ for _ in ()).throw(
+        RunError("no sandbox: not here; type this")))
+    with pytest.raises(RunError, match="no sandbox"):
+        GradingTrial().parse(["--file", str(tmp_path / "follower.py"),
+                              "--out", str(tmp_path / "out")])
 
 
 @pytest.mark.parametrize(("name", "content", "says"), [

@@ -51,3 +51,15 @@ def test_a_missing_key_is_named(tmp_path):
     wrong.write_text(yaml.safe_dump(values))
     with pytest.raises(RunError, match=r"missing key 'limits\.disk_mb'"):
         load_rules(wrong)
+
+
+def test_a_file_from_before_there_was_a_pass_line_passes_with_60_percent(tmp_path):
+    values = yaml.safe_load(SHIPPED.read_text())
+    del values["pass_points"]
+    values["points"] |= {"finish": 6, "line": 3, "speed": 1}
+    old = tmp_path / "old.yaml"
+    old.write_text(yaml.safe_dump(values))
+    assert load_rules(old).pass_points == 6.0
+    old.write_text(yaml.safe_dump(values | {"pass_points": 11}))
+    with pytest.raises(RunError, match="pass_points: must be 10 or less"):
+        load_rules(old)

@@ -124,6 +124,15 @@ def test_a_program_without_code_is_not_driven(marking, tmp_path, capsys, program
     assert says in (options.out / "students" / "good" / "index.html").read_text()
 
 
+@pytest.mark.parametrize("content", [
+    "# 我的\nx = 1\n".encode("gbk"), "x = 1\n".encode("utf-16"), b"x = 1\0\n"])
+def test_a_program_that_is_not_in_utf_8_is_not_driven(marking, tmp_path, content):
+    (tmp_path / "in" / "good.py").write_bytes(content)
+    found = mark(marking, FakeSession())
+    assert (found.points, found.outcome) == (0, "fault")
+    assert "exception in good.py, line 1: " in found.lost[0]
+
+
 @pytest.mark.parametrize("program", ["# mine\rx = 1\r", "\ufeffx = 1", "# mine\r\n\t\r\nx = 1"])
 def test_a_program_with_a_line_of_code_is_driven(marking, tmp_path, program):
     (tmp_path / "in" / "good.py").write_bytes(program.encode())

@@ -273,4 +273,4 @@ def write_sheet(drives: Sequence, path: Path) -> None:
         if not drive.passed:
             plan.cross(drive.path[-1], CAR)
     write_image(path, sheet(("AutoRace 2020", f"{passed} of {len(drives)} drives passed"), [plan],
-                          [("barriers", CAR), ("bays", WHITE)]))
+                            [("barriers", CAR), ("bays", WHITE)]))

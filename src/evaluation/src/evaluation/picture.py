@@ -260,7 +260,7 @@ def write_tiles(path: Path, tiles: Sequence[tuple[str, bool, np.ndarray]], colum
     columns = min(columns, len(shown))
     shown += [np.full_like(shown[0], bgr(PAPER))] * (-len(shown) % columns)
     write_image(path, np.vstack([np.hstack(shown[first:first + columns])
-                               for first in range(0, len(shown), columns)]))
+                                 for first in range(0, len(shown), columns)]))
 
 
 @contextlib.contextmanager

@@ -10,7 +10,7 @@ from node_basics.records import read_yaml, to_record
 
 from run_session.failure import RunError
 
-PASS_POINTS = 60.0
+PASS_SHARE = 0.6  # of all points, where a file from before there was a pass line has none
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,10 @@ class Rules:
 def load_rules(path: Path) -> Rules:
     """Read a marking.yaml; RunError names file and key."""
     values = read_yaml(path, RunError)
-    if isinstance(values, dict):  # files from before there was a pass line
-        values.setdefault("pass_points", PASS_POINTS)
-    rules = to_record(Rules, values, path, RunError)
+    lacks = isinstance(values, dict) and "pass_points" not in values
+    rules = to_record(Rules, {**values, "pass_points": 0.0} if lacks else values, path, RunError)
+    if lacks:
+        rules = dataclasses.replace(rules, pass_points=PASS_SHARE * rules.points.most)
     small = [key for key, value in dataclasses.asdict(rules.limits).items() if value <= 0]
     for wrong, what in (
             (len(rules.light) != 2 or not 0 < rules.light[0] <= rules.light[-1],

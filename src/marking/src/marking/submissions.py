@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 import tarfile
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Callable, Iterator, Sequence
@@ -313,11 +314,14 @@ def _tar_members(archive: tarfile.TarFile) -> Iterator[_Member]:
 
 
 def _say_what_does_not_compile(program: Path) -> None:
-    """Print a syntax error's line number and text."""
+    """Print a syntax error's line number and text; also of a file that is not in UTF-8."""
     try:
-        compile(program.read_bytes(), "", "exec")
+        with tokenize.open(program) as file:
+            compile(file.read(), "", "exec")
     except SyntaxError as error:
         print(f"{error.lineno or 1} {type(error).__name__}: {error.msg}")
+    except ValueError as error:  # UnicodeDecodeError is one
+        print(f"1 {type(error).__name__}: {error}; save it as UTF-8")
 
 
 def main(source: str, folder: str = "") -> int:

@@ -45,7 +45,7 @@ export function comparison(title, take) {
 
 /** The other's curve minus this one's, at this one's times up to the other's end. */
 export function difference(curve, other) {
-  const times = curve.times.filter((time) => time <= other.times.at(-1));
+  const times = curve.times.filter((time) => other.times[0] <= time && time <= other.times.at(-1));
   return { name: [`difference, ${curve.name[0]}`, `之差：${curve.name[1]}`], unit: curve.unit, times,
     values: times.map((time, i) => {
       let next = other.times.findIndex((one) => one >= time);

@@ -5,7 +5,7 @@ import { t } from "../language.js";
 
 const PLACES = 300; // marks that are nearer to each other are one
 const MOST_NAMED = 5; // in one's tooltip
-const NAMES = {
+const NAMES = { __proto__: null, // a mark may have any name
   lost: t("line lost", "偏离赛道"), contact: t("contact", "碰撞"), lap: t("lap", "完成一圈"),
   largest: t("largest error", "最大偏差"),
 };

@@ -64,12 +64,12 @@ class Timeline(Paced):
         name = simulator_name(self.master.state())
         replayed = str(rospy.get_param(name + names.REPLAY, ""))
         path = Path(replayed or str(rospy.get_param(name + names.RUN_LOG, "")))
-        try:
-            status = path.stat()
-        except OSError:
+        if not path.is_file():  # Path("") neither: there is no run, or none any more
+            self._seen = ()
             return self.changed({})
+        status = path.stat()
         seen = path, status.st_mtime_ns, status.st_size
-        if seen == self._seen or not path.is_file():
+        if seen == self._seen:
             return None
         self._seen = seen
         return self.changed(timeline(path, bool(replayed)))
