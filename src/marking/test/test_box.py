@@ -84,7 +84,7 @@ def test_exceptions_in_callbacks_are_found_in_what_was_printed():
     where = "exception in my follower.py, line 61: "
     assert exceptions(printed, "/home/submission") == [
         f"{where}ZeroDivisionError: division by zero", f"{where}MyFault: division by zero"]
-    assert exceptions(printed, "/home/other") == []
+    assert exceptions(printed, "/srv/other") == []
 
 
 def test_a_program_that_only_reaches_its_end_is_told_what_is_missing(boxed):

@@ -65,7 +65,7 @@ def test_in_chinese_the_table_has_a_second_row_of_headings(tmp_path, monkeypatch
     assert ";".join(heads.values()) == (
         "学生;得分;满分;赛道 0，种子 1;赛道 0，种子 2;沙箱;为什么扣分;备注")
     assert rows[0]["why points were lost"] == f"0 分（满分 100）：程序出错。-100：{EVIL}"
-    assert "-8：离线 9.0 厘米（3 厘米以内不扣分）" in rows[1]["why points were lost"]
+    assert "-8：偏离线 9.0 厘米（3 厘米以内不扣分）" in rows[1]["why points were lost"]
 
 
 def test_pages_are_in_the_wanted_language(tmp_path, monkeypatch):
@@ -73,7 +73,7 @@ def test_pages_are_in_the_wanted_language(tmp_path, monkeypatch):
     write(tmp_path)
     page = (tmp_path / "students" / "张伟" / "index.html").read_text(encoding="utf-8")
     for said in ('lang="zh-CN"', "85.5 分（满分 100）", "赛道 0，种子 1", "跑完一圈",
-                 "-8：离线 9.0 厘米（3 厘米以内不扣分）", "三维回放", "程序的输出："):
+                 "-8：偏离线 9.0 厘米（3 厘米以内不扣分）", "三维回放", "程序的输出："):
         assert said in page
     table = (tmp_path / "marks.html").read_text(encoding="utf-8")
     for said in ("<h1>成绩</h1>", "小车跑得怎么样",
@@ -158,7 +158,7 @@ def test_the_same_in_chinese(monkeypatch):
     assert said({**LEFT, "exception": RAISED, "rms_lateral_m": 0.09}) == (
         "21.9 分（满分 100）：跑了全程的 25%。-75：a.py 第 3 行出现异常：ZeroDivisionError: "
         "division by zero；小车离开了跑道，在 x=1.41，y=-0.84，仿真时间 19.4 秒：位于线的右侧 "
-        "0.25 米处。-3.1：离线 9.0 厘米（3 厘米以内不扣分）")
+        "0.25 米处。-3.1：偏离线 9.0 厘米（3 厘米以内不扣分）")
 
 
 def test_a_part_of_the_way_counts_as_that_part():

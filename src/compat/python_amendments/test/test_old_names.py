@@ -56,8 +56,9 @@ SCRIPTS = {  # code: what it prints, the new form
 def run(tmp_path, code, name="old.py"):
     script = tmp_path / name
     script.write_text(code)
-    return subprocess.run([sys.executable, script], env={"PYTHONPATH": f"{SOURCE}:{LANGUAGE}"},
-                          text=True, capture_output=True, timeout=100)
+    environment = {"PYTHONPATH": f"{SOURCE}:{LANGUAGE}", "HOME": str(Path.home())}
+    return subprocess.run([sys.executable, script], env=environment, text=True,
+                          capture_output=True, timeout=100)
 
 
 @pytest.mark.parametrize("code", SCRIPTS, ids=lambda code: code.splitlines()[-1][:40])
