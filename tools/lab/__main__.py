@@ -20,6 +20,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 
 import rosgraph
@@ -33,6 +34,7 @@ from run_session.master import free_port
 
 HERE = Path(__file__).resolve().parent
 START_TIME = 120.0  # s, wall, for page and JupyterLab each
+TRIES = 3  # at a port, when several labs start at once
 END_TIME = 20.0  # s, wall, for each of them to end
 PERIOD = 0.1  # s, wall, between two looks
 
@@ -56,17 +58,25 @@ class Lab:
         write_terminal(self._folder, master)
         lay_out(self._folder, self._language)
         token, runtime = secrets.token_urlsafe(24), self._folder.state / "runtime"
-        shutil.rmtree(runtime, ignore_errors=True)  # a killed lab's
         config = write_settings(self._folder, self._language, page_port, page_token, browser,
                                 wished, token)
         own = {f"JUPYTER_{name.upper()}_DIR": str(self._folder.state / name)
                for name in ("config", "data", "runtime")}
-        self._run(
-            "jupyter", sys.executable, "-m", "jupyterlab", f"--config={config}", env=env | own | {
-                "LAB_LANGUAGE": self._language, "IPYTHONDIR": str(self._folder.state / "ipython"),
-                "PYTHONPATH": os.pathsep.join([str(HERE), os.environ.get("PYTHONPATH", "")])})
-        port = self._wait("jupyter", lambda: _listening(runtime))
-        return f"http://127.0.0.1:{port}/lab?token={token}"
+        own |= {"LAB_LANGUAGE": self._language, "IPYTHONDIR": str(self._folder.state / "ipython"),
+                "PYTHONPATH": os.pathsep.join([str(HERE), os.environ.get("PYTHONPATH", "")])}
+        left = TRIES
+        while True:
+            shutil.rmtree(runtime, ignore_errors=True)  # a killed lab's, or the try's before
+            self._run("jupyter", sys.executable, "-m", "jupyterlab", f"--config={config}",
+                      env=env | own)
+            try:
+                port = self._wait("jupyter", lambda: _listening(runtime, token))
+                return f"http://127.0.0.1:{port}/lab?token={token}"
+            except LabError:
+                left -= 1
+                if not left or self._children[-1][1].poll() is None:
+                    raise
+                self._children.pop()  # another lab that starts has taken the port meanwhile
 
     def wait(self) -> str:
         """Until one of them ends; its name."""
@@ -114,10 +124,17 @@ def _page_url(master: str) -> str:
     return ""
 
 
-def _listening(runtime: Path) -> int:
-    """The port on which Jupyter's server listens; 0: not yet."""
-    with contextlib.suppress(StopIteration, ValueError, KeyError):  # not there, or not whole
-        return json.loads(next(runtime.glob("jpserver-*.json")).read_text("utf-8"))["port"]
+def _listening(runtime: Path, token: str) -> int:
+    """The port on which the server with this token listens; 0: not yet.
+
+    Its file is there before that, also with a port that another one takes first.
+    """
+    with contextlib.suppress(StopIteration, ValueError, KeyError, OSError, HTTPException):
+        port = json.loads(next(runtime.glob("jpserver-*.json")).read_text("utf-8"))["port"]
+        connection = HTTPConnection("127.0.0.1", port, timeout=START_TIME)
+        with contextlib.closing(connection):
+            connection.request("GET", "/api/status", headers={"Authorization": f"token {token}"})
+            return port if connection.getresponse().status == 200 else 0
     return 0
 
 
