@@ -110,6 +110,7 @@ def test_a_drive_shows_nothing_of_an_earlier_one(marking):
 @pytest.mark.parametrize("program, says", [
     ("", "good.py is empty"), (" \n", "good.py is empty"),
     ("# TODO\n", "good.py has only comments"),
+    ("x = 1\0\n", "exception in good.py, line 1: SyntaxError: source code string cannot contain"),
     ("x = 1\nprint 'x'\n", "exception in good.py, line 2: SyntaxError: ")])
 def test_a_program_without_code_is_not_driven(marking, tmp_path, capsys, program, says):
     (tmp_path / "in" / "good.py").write_text(program)
@@ -125,12 +126,13 @@ def test_a_program_without_code_is_not_driven(marking, tmp_path, capsys, program
 
 
 @pytest.mark.parametrize("content", [
-    "# 我的\nx = 1\n".encode("gbk"), "x = 1\n".encode("utf-16"), b"x = 1\0\n"])
+    "# 我的\nx = 1\n".encode("gbk"), "x = 1\n".encode("utf-16")])
 def test_a_program_that_is_not_in_utf_8_is_not_driven(marking, tmp_path, content):
     (tmp_path / "in" / "good.py").write_bytes(content)
     found = mark(marking, FakeSession())
     assert (found.points, found.outcome) == (0, "fault")
-    assert "exception in good.py, line 1: " in found.lost[0]
+    assert found.lost == ("-100: exception in good.py, line 1: SyntaxError: the file is not in "
+                          "UTF-8, save it as UTF-8",)
 
 
 @pytest.mark.parametrize("program", ["# mine\rx = 1\r", "\ufeffx = 1", "# mine\r\n\t\r\nx = 1"])

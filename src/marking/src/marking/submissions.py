@@ -313,15 +313,22 @@ def _tar_members(archive: tarfile.TarFile) -> Iterator[_Member]:
         yield _Member(entry.name, lambda entry=entry: archive.extractfile(entry))
 
 
+NOT_UTF_8 = "the file is not in UTF-8, save it as UTF-8"
+
+
 def _say_what_does_not_compile(program: Path) -> None:
     """Print a syntax error's line number and text; also of a file that is not in UTF-8."""
     try:
         with tokenize.open(program) as file:
-            compile(file.read(), "", "exec")
-    except SyntaxError as error:
-        print(f"{error.lineno or 1} {type(error).__name__}: {error.msg}")
-    except ValueError as error:  # UnicodeDecodeError is one
-        print(f"1 {type(error).__name__}: {error}; save it as UTF-8")
+            text = file.read()
+    except (SyntaxError, UnicodeDecodeError):  # of a declared encoding, or of the lack of one
+        print(f"1 SyntaxError: {NOT_UTF_8}")
+        return
+    try:
+        compile(text, "", "exec")
+    except (SyntaxError, ValueError) as error:  # the latter in older releases: a null byte
+        line, said = getattr(error, "lineno", 1) or 1, getattr(error, "msg", str(error))
+        print(f"{line} SyntaxError: {said}")
 
 
 def main(source: str, folder: str = "") -> int:
